@@ -1,0 +1,52 @@
+"""The blobs (12) and (13) and the five scalars of their regularized Stokeslet, rotlet and dipole.
+
+With r the distance, R^2 = r^2 + eps^2 and p = eps^2/R^2, everything below is without 1/(8 pi):
+
+    algebraic7, psi = 15 eps^4 / (8 pi R^7)                    (12); scalars (63)-(68)
+    algebraic9, psi = 15 eps^6 (5 - 2 r^2/eps^2) / (16 pi R^9) (13); scalars derived here
+
+from H1 = B'/r - G, H2 = (B'/r)'/r, Q = G'/r, D1 = psi - Q, D2 = -Q'/r. Written in p, both blobs
+share their leading terms (the singular solution) and differ in powers of p only. For r >> eps:
+H1 -> 1/r, H2 -> 1/r^3, Q -> 2/r^3, D1 -> -2/r^3, D2 -> 6/r^5.
+"""
+
+import math
+
+from rodsim.jit import inline
+
+ALGEBRAIC7 = 7
+ALGEBRAIC9 = 9
+BLOBS = {"algebraic7": ALGEBRAIC7, "algebraic9": ALGEBRAIC9}
+
+
+@inline
+def stokeslet_scalars(blob, r2, e2):
+    """Return (H1, H2, Q) times 8 pi at squared distance r2, squared blob size e2."""
+    inverse = 1.0 / math.sqrt(r2 + e2)
+    inverse2 = inverse * inverse
+    inverse3 = inverse * inverse2
+    p = e2 * inverse2
+    if blob == ALGEBRAIC7:
+        return inverse * (1.0 + p), inverse3, inverse3 * (2.0 + 3.0 * p)
+    return (
+        inverse * (1.0 + p * (0.5 + 1.5 * p)),
+        inverse3 * (1.0 + 1.5 * p),
+        inverse3 * (2.0 + p * (3.0 + 7.5 * p)),
+    )
+
+
+@inline
+def dipole_scalars(blob, r2, e2):
+    """Return (D1, D2) times 8 pi at squared distance r2, squared blob size e2."""
+    inverse2 = 1.0 / (r2 + e2)
+    inverse3 = inverse2 * math.sqrt(inverse2)
+    p = e2 * inverse2
+    if blob == ALGEBRAIC7:
+        return (
+            inverse3 * (-2.0 + p * (-3.0 + 15.0 * p)),
+            inverse3 * inverse2 * (6.0 + 15.0 * p),
+        )
+    return (
+        inverse3 * (-2.0 + p * (-3.0 + p * (-22.5 + 52.5 * p))),
+        inverse3 * inverse2 * (6.0 + p * (15.0 + 52.5 * p)),
+    )

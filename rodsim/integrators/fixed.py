@@ -1,0 +1,34 @@
+"""What the fixed-step methods share: whole steps, counted."""
+
+from rodsim.dynamics import RodSystem
+from rodsim.integrators.step import Step
+from rodsim.rods.state import State
+
+
+class FixedStep:
+    """Steps of equal size; time is counted, t_n = n * size, never accumulated."""
+
+    dense = False
+    stages: int
+    spectral_radius = float("nan")
+
+    def __init__(self, system: RodSystem, step: float):
+        self.system = system
+        self.size = step
+        self.accepted = self.rejected = 0
+        self.max_stages = self.stages
+
+    def increment(self, state: State):
+        """Return the increments of one step from ``state``."""
+        raise TypeError("a method defines its increment")
+
+    def steps(self, state: State, end: float):
+        """Yield the steps from ``state`` to ``end``, a whole number of them."""
+        total = round(end / self.size)
+        while self.accepted < total:
+            y = self.increment(state)
+            self.accepted += 1
+            time = end if self.accepted == total else self.accepted * self.size
+            after = self.system.state_at(state, time, y)
+            yield Step(self.system, self.accepted, state, self.size, y, after)
+            state = after

@@ -1,0 +1,174 @@
+"""RKC2: the stabilised explicit Runge-Kutta-Chebyshev method of order 2, adaptive.
+
+Sommeijer, Shampine & Verwer, J. Comput. Appl. Math. 88 (1998) 315-326. Its stability interval on
+the negative real axis grows as the square of the number of stages, 0.65 s^2, so the cost of
+stiffness grows as its square root, without any linear algebra.
+"""
+
+import math
+from functools import lru_cache
+
+import numpy as np
+
+from rodsim.dynamics import RodSystem
+from rodsim.errors import StepFailure
+from rodsim.integrators.spectral import SpectralRadius
+from rodsim.integrators.step import Step
+from rodsim.jit import VEC, kernel
+from rodsim.rods.state import State
+
+DAMPING = 2.0 / 13.0
+SAFETY = 0.8
+RADIUS_SAFETY = 1.2  # the power iteration comes from below
+REFRESH = 25  # accepted steps between estimates of the spectral radius
+MOST_STAGES = 2000  # rounding grows as s^2 and is then still below 1e-9 of the increment
+
+
+def stages_for(size: float, rho: float) -> int:
+    """Return the number of stages that makes a step of ``size`` stable at rate ``rho``."""
+    return max(2, 1 + int(math.sqrt(1.54 * size * rho + 1.0)))
+
+
+@lru_cache(maxsize=256)
+def coefficients(s: int):
+    """Return the (s + 1, 5) table of mu, nu, mu~, gamma~, c of the s-stage method.
+
+    With T_j the Chebyshev polynomials at w_0 = 1 + damping/s^2: b_j = T_j''/(T_j')^2,
+    w_1 = T_s'/T_s'', a_j = 1 - b_j T_j; rows 0 and 1 hold only mu~_1 and c_1.
+    """
+    d = DAMPING / s**2
+    w0 = 1.0 + d
+    t, t1, t2 = np.zeros(s + 1), np.zeros(s + 1), np.zeros(s + 1)
+    t[0], t[1], t1[1] = 1.0, w0, 1.0
+    for j in range(2, s + 1):
+        t[j] = 2.0 * w0 * t[j - 1] - t[j - 2]
+        t1[j] = 2.0 * w0 * t1[j - 1] - t1[j - 2] + 2.0 * t[j - 1]
+        t2[j] = 2.0 * w0 * t2[j - 1] - t2[j - 2] + 4.0 * t1[j - 1]
+    w1 = t1[s] / t2[s]
+    b = np.empty(s + 1)
+    b[2:] = t2[2:] / t1[2:] ** 2
+    b[0] = b[1] = b[2]
+    a = 1.0 - b * t
+    table = np.zeros((s + 1, 5))
+    for j in range(2, s + 1):
+        mu_tilde = 2.0 * b[j] * w1 / b[j - 1]
+        c = w1 * t2[j] / t1[j]
+        table[j] = 2.0 * b[j] * w0 / b[j - 1], -b[j] / b[j - 2], mu_tilde, -a[j - 1] * mu_tilde, c
+    table[1, 2] = b[1] * w1
+    table[1, 4] = table[2, 4] / t1[2]
+    table[s, 4] = 1.0
+    return table
+
+
+@kernel(f"void(float64, float64, float64, float64, {VEC}, {VEC}, {VEC}, {VEC})")
+def combine(mu, nu, h_mu_tilde, h_gamma_tilde, y, oldest, f, f0):
+    """Y_j = mu Y_(j-1) + nu Y_(j-2) + h mu~ F_(j-1) + h gamma~ F_0, written over Y_(j-2).
+
+    On increments Y_0 = 0, so the term (1 - mu - nu) Y_0 of the method is absent.
+    """
+    for i in range(y.size):
+        oldest[i] = mu * y[i] + nu * oldest[i] + h_mu_tilde * f[i] + h_gamma_tilde * f0[i]
+
+
+class RKC:
+    """Adaptive RKC2. ``tolerance`` bounds the local error of a step, in the norm of the contract:
+    root mean square over all components of the rods, positions relative to the longest rod.
+    """
+
+    order = 2
+    dense = True
+
+    def __init__(self, system: RodSystem, tolerance: float):
+        self.system = system
+        self.tolerance = tolerance
+        self.accepted = self.rejected = self.max_stages = 0
+        self.spectral_radius = math.nan
+        self._radius = SpectralRadius(system)
+        self._size = None
+        self._previous = None  # (step size, error) of the last accepted step
+
+    def steps(self, state: State, end: float):
+        """Yield accepted steps of adapted size until ``end`` is reached exactly."""
+        system = self.system
+        f0 = system.velocities(state.time, state, system.zeros(), system.zeros())
+        while state.time < end:
+            if self.accepted % REFRESH == 0:
+                self._estimate_radius(state, f0)
+            if self._size is None:
+                self._size = self._first_size(state, f0, end)
+            size, y, f1, velocities = self._accepted(state, f0, end)
+            self.accepted += 1
+            time = end if size == end - state.time else state.time + size
+            after = system.state_at(state, time, y)
+            yield Step(system, self.accepted, state, size, y, after, (f0, f1))
+            state, f0 = after, velocities
+
+    def attempt(self, state: State, f0: np.ndarray, size: float):
+        """Return (increment, rate at its end, velocities at its end, scaled error) of a trial."""
+        s = stages_for(size, self.spectral_radius)
+        self.max_stages = max(self.max_stages, s)
+        table, system = coefficients(s), self.system
+        oldest, y, f = system.zeros(), size * table[1, 2] * f0, system.zeros()
+        for j in range(2, s + 1):
+            mu, nu, mu_tilde, gamma_tilde, _ = table[j]
+            system.rate(state.time + table[j - 1, 4] * size, state, y, f)
+            combine(mu, nu, size * mu_tilde, size * gamma_tilde, y, oldest, f, f0)
+            oldest, y = y, oldest
+        velocities = system.velocities(state.time + size, state, y, f)
+        f1 = system.to_increments(y, velocities.copy())
+        return y, f1, velocities, self._error(size, y, f0, f1)
+
+    def _accepted(self, state, f0, end):
+        """Try sizes until one is accepted; return it with what ``attempt`` made of it."""
+        while True:
+            size = self._limited(end - state.time)
+            y, f1, velocities, error = self.attempt(state, f0, size)
+            if error <= 1.0:
+                self._grow(size, error)
+                return size, y, f1, velocities
+            self.rejected += 1
+            self._size = size * (
+                max(0.1, SAFETY * error ** (-1.0 / 3.0)) if math.isfinite(error) else 0.1
+            )
+            if not self._size > 1e-13 * end:
+                raise StepFailure(f"no step is accepted, down to a size of {self._size:.2g}", state)
+            self._estimate_radius(state, f0)
+
+    def _error(self, size, y, f0, f1):
+        """Return the local error 0.8 (y_n - y_(n+1)) + 0.4 h (f_n + f_(n+1)) over the tolerance."""
+        n = self.system.rod_size
+        estimate = 0.4 * size * (f0[:n] + f1[:n]) - 0.8 * y[:n]
+        with np.errstate(all="ignore"):
+            norm = np.sqrt(np.mean(np.square(estimate * self.system.weights[:n])))
+        return float(norm) / self.tolerance
+
+    def _grow(self, size, error):
+        """Choose the next size from the last two errors, within [0.1, 10] of this one."""
+        error = max(error, 1e-10)
+        factor = SAFETY * error ** (-1.0 / 3.0)
+        if self._previous is not None:
+            before_size, before = self._previous
+            factor = SAFETY * before ** (1.0 / 3.0) / error ** (2.0 / 3.0) * size / before_size
+        self._previous = size, error
+        self._size = size * min(10.0, max(0.1, factor))
+
+    def _limited(self, left):
+        """Return the size to try: never a sliver before the end, never too many stages."""
+        size = min(self._size, (MOST_STAGES**2 - 1.0) / (1.54 * self.spectral_radius))
+        if size >= 0.9 * left:
+            return left
+        return min(size, 0.5 * left)
+
+    def _estimate_radius(self, state, f0):
+        rho = self._radius.estimate(state, f0)
+        if not math.isfinite(rho):
+            raise StepFailure("the rates of change are not finite", state)
+        self.spectral_radius = max(RADIUS_SAFETY * rho, 1e-300)
+
+    def _first_size(self, state, f0, end):
+        """Return a first step from the change of the rate over a step of 1/rho."""
+        trial = min(1.0 / self.spectral_radius, end)
+        f1 = self.system.rate(state.time + trial, state, trial * f0, self.system.zeros())
+        n, w = self.system.rod_size, self.system.weights
+        change = trial * np.sqrt(np.mean(np.square((f1 - f0)[:n] * w[:n]))) / self.tolerance
+        return min(end, 0.1 * trial / math.sqrt(change) if change > 0.0 else end)

@@ -1,0 +1,56 @@
+"""What every integrator hands to the run: one accepted step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from rodsim.dynamics import RodSystem
+from rodsim.rods.state import State
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step from ``start`` over ``size`` in time, with end increments and both end rates.
+
+    ``increment`` (6 N + 3 P,) leads from ``start`` to ``end``; ``rates`` are dy/dt at both ends,
+    or None for methods without dense output.
+    """
+
+    system: RodSystem
+    number: int
+    start: State
+    size: float
+    increment: np.ndarray
+    end: State
+    rates: tuple[np.ndarray, np.ndarray] | None = None
+
+    def at(self, time: float) -> State:
+        """Return the state at a time inside the step: cubic Hermite on the increments.
+
+        With x = (time - start)/size: y = x^2 (3 - 2 x) y_1 + size x (1 - x) [(1 - x) f_0 - x f_1],
+        error O(size^4), so it does not lower the order of a method of order 2 or 3.
+        """
+        if time == self.end.time:
+            return self.end
+        x = (time - self.start.time) / self.size
+        f0, f1 = self.rates
+        y = x * x * (3.0 - 2.0 * x) * self.increment
+        y += self.size * x * (1.0 - x) * ((1.0 - x) * f0 - x * f1)
+        return self.system.state_at(self.start, time, y)
+
+
+class Integrator(Protocol):
+    """One method in time. ``steps`` yields accepted steps until ``end`` is reached exactly."""
+
+    order: int
+    dense: bool
+    accepted: int
+    rejected: int
+    max_stages: int
+    spectral_radius: float
+
+    def steps(self, state: State, end: float):
+        """Yield :class:`Step` after :class:`Step` from ``state`` to ``end``."""

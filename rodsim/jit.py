@@ -1,0 +1,25 @@
+"""How every kernel of rodsim is compiled: one place for flags and array types.
+
+``reassoc`` is what lets LLVM vectorise a sum; ``nnan`` and ``ninf`` are left out on purpose, so a
+NaN or an infinity in a state always shows. ``error_model="numpy"``: a checked division would stop
+vectorisation. Signatures are given, so a kernel is compiled (or read from the cache) once, when
+its module is imported, and never again for another array layout.
+"""
+
+from functools import partial
+
+from numba import njit
+
+VEC = "float64[::1]"
+MAT = "float64[:, ::1]"
+TRIADS = "float64[:, :, ::1]"
+INTS = "int64[::1]"
+BOOLS = "boolean[::1]"
+
+SUM_FLAGS = frozenset({"reassoc", "contract", "arcp", "nsz"})
+
+kernel = partial(njit, cache=True, error_model="numpy")
+parallel_kernel = partial(
+    njit, cache=True, error_model="numpy", parallel=True, fastmath=set(SUM_FLAGS)
+)
+inline = partial(njit, cache=True, error_model="numpy", inline="always")

@@ -1,0 +1,42 @@
+"""Energies over time."""
+
+from rodsim.errors import FileError, UsageError
+
+
+def plot_energies(table, path) -> None:
+    """Draw every column of an :class:`~rodsim.analysis.energy.EnergyTable` over time to a file."""
+    try:
+        from matplotlib.figure import Figure
+    except ImportError as error:
+        raise UsageError("--plot needs matplotlib: pip install 'rodsim[plot]'") from error
+    figure = Figure(figsize=(6.4, 4.2), layout="constrained")
+    draw_energies(figure.add_subplot(), table)
+    try:
+        figure.savefig(path, dpi=160)
+    except (OSError, ValueError) as error:
+        raise FileError(f"{path}: cannot be drawn: {error}") from error
+
+
+def draw_energies(axis, table):
+    """Draw the energies on a matplotlib axis (kinetic energy on its own scale); return the axis."""
+    styles = dict(
+        zip(table.columns[1:], ("-", "--", ":", "-.", "-", "--"), strict=False), total="-"
+    )
+    time = table.rows[:, 0]
+    for column, values in zip(table.columns[1:], table.rows[:, 1:].T, strict=True):
+        if column == "kinetic":
+            continue
+        width = 2.4 if column == "total" else 1.4
+        axis.plot(time, values, styles[column], lw=width, label=column)
+    axis.set_xlabel(f"time ({table.time_unit})")
+    axis.set_ylabel(f"energy ({table.unit})")
+    handles, labels = axis.get_legend_handles_labels()
+    if "kinetic" in table.columns:
+        right = axis.twinx()
+        kinetic = table.rows[:, table.columns.index("kinetic")]
+        handles += right.plot(time, kinetic, color="0.4", ls=(0, (5, 1, 1, 1)), lw=1.4)
+        labels.append("kinetic (right)")
+        right.set_ylabel(f"kinetic energy ({table.unit})")
+    axis.legend(handles, labels, frameon=False)
+    axis.set_xlim(time[0], time[-1])
+    return axis

@@ -1,0 +1,82 @@
+"""Text for people: what a case will do, what a run has cost, what an output file holds."""
+
+from __future__ import annotations
+
+from rodsim.recorder import frame_times
+from rodsim.rods import build_scene
+
+
+def describe_case(case) -> str:
+    """Return the resolved scene, its fastest rate, and the stable step of every integrator."""
+    from rodsim.dynamics import RodSystem
+    from rodsim.integrators.limits import stability
+
+    scene = build_scene(case)
+    unit = case.units
+    lines = [case.title] if case.title else []
+    for r, name in enumerate(scene.rods.names):
+        kind = "closed" if scene.rods.closed[r] else "open"
+        lines.append(
+            f"rod {name}: {scene.rods.count[r]} points, {kind}, length "
+            f"{scene.rods.lengths[r]:.6g} {unit.length}, spacing {scene.rods.spacing[r]:.6g}"
+        )
+    lines.append(
+        f"fluid: viscosity {scene.viscosity:.6g} {unit.mass} {unit.length}^-1 {unit.time}^-1, "
+        f"{scene.blob}, epsilon {scene.epsilon:.6g} {unit.length} "
+        f"= {scene.epsilon / scene.rods.spacing[0]:.4g} spacings"
+    )
+    if scene.planar:
+        lines.append("planar: only u_y, u_z and w_x are computed")
+    for name, count in scene.tracer_groups.items():
+        lines.append(f"tracers {name}: {count} markers")
+    time = case.time
+    how = f"step {time.step:g}" if time.step else f"tolerance {time.tolerance:g}"
+    frames = len(frame_times(time.end, case.interval))
+    lines.append(f"time: to {time.end:g} {unit.time} by {time.integrator}, {how}; {frames} frames")
+    limits = stability(RodSystem(scene))
+    lines.append(f"fastest rate at t = 0: {limits.rate:.4g} 1/{unit.time}")
+    for name, step in limits.largest_steps.items():
+        lines.append(f"  {name}: stable up to a step of {step:.4g} {unit.time}")
+    lines.append("  rkc: any step; stages at a step of " + ", ".join(
+        f"{size:g}: {stages}" for size, stages in limits.stages.items()))  # fmt: skip
+    return "\n".join(lines)
+
+
+def run_summary(summary, output) -> str:
+    """Return the lines printed when a run has ended, however it has."""
+    cost = summary.runtime
+    total = cost["wall_seconds"]
+    lines = []
+    if summary.moved:
+        lines.append(f"the earlier {output} is now {summary.moved}")
+    lines.append(f"{summary.status}: {summary.frames} frames in {output}")
+    lines.append(
+        f"{cost['evaluations']} evaluations, {cost['steps_accepted']} steps accepted, "
+        f"{cost['steps_rejected']} rejected, up to {cost['max_stages']} stages"
+    )
+    parts = ("compile", "sum", "elasticity", "output")
+    split = ", ".join(f"{part} {cost[f'{part}_seconds']:.2f}" for part in parts)
+    lines.append(f"{total:.2f} s of wall time: {split} s")
+    return "\n".join(lines)
+
+
+def describe_output(path) -> str:
+    """Return what an output file holds and how its run ended."""
+    from rodsim.output import open_trajectory
+
+    with open_trajectory(path) as run:
+        unit = run.units
+        last = f"t = 0 to {run.time[-1]:g} {unit['time']}" if run.frames else "no time"
+        lines = [
+            f"{path}: {run.status}, {run.frames} frames, {last}",
+            f"written by rodsim {run.version}, {run.created}; format {run.format}",
+        ]
+        for rod in run.rods:
+            kind = "closed" if rod.closed else "open"
+            lines.append(f"rod {rod.name}: {rod.count} points, {kind}, spacing {rod.spacing:g}")
+        lines.append(f"fields: {', '.join(run.fields)}")
+        lines.append(f"observables: {', '.join(run.observables)}")
+        lines += [f"{key}: {value:.6g}" for key, value in sorted(run.runtime.items())]
+        if run.overrides:
+            lines.append("--set " + " --set ".join(run.overrides))
+    return "\n".join(lines)

@@ -1,0 +1,142 @@
+"""Case -> scene: shapes are built and placed, all rods put into one array, geometry checked."""
+
+from pathlib import Path
+
+import numpy as np
+
+from rodsim.errors import CaseError
+from rodsim.rods.shapes import FORMULAS, place
+from rodsim.rods.state import Rods, Scene, State, StrainTwist
+from rodsim.rods.stored import read_shape
+from rodsim.rods.tracers import tube
+
+__all__ = ["Rods", "Scene", "State", "StrainTwist", "build_scene"]
+
+PLANE_TOLERANCE = 1e-12  # of the rod's length, as the case file's contract has it
+
+
+def build_scene(case) -> Scene:
+    """Return the scene of a validated case.
+
+    Raises CaseError for what only the geometry can tell (spacings that differ, a planar scene
+    that is not, triads a half-turn apart) and FileError for a shape file.
+    """
+    built = [_build_rod(rod.shape, _folder(case)) for rod in case.rods.values()]
+    rods = _tables(case, built)
+    position = np.ascontiguousarray(np.concatenate([rod[0] for rod in built], axis=1))
+    director = np.ascontiguousarray(np.concatenate([rod[1] for rod in built], axis=2))
+    epsilon, problems = _epsilon(case, rods)
+    if case.plane is not None:
+        problems += _plane_problems(case, rods, position, director)
+        position[0], director = position[0, 0], _flattened(director)
+    problems += _half_turns(case, rods, director)
+    if problems:
+        raise CaseError(problems)
+    tracer, groups = _tracers(case, rods, built)
+    return Scene(
+        rods=rods,
+        strain_twist=StrainTwist(rods, [rod.strain_twist for rod in case.rods.values()]),
+        epsilon=epsilon,
+        viscosity=case.fluid.viscosity,
+        blob=case.fluid.blob,
+        planar=case.plane is not None,
+        density=case.fluid.density,
+        tracer_groups=groups,
+        initial=State(0.0, position, director, tracer),
+    )
+
+
+def _folder(case):
+    return Path(case.source.path).parent if case.source and case.source.path else Path()
+
+
+def _build_rod(shape, folder):
+    """Return position, director, spacing, closed of one rod, placed."""
+    if shape.kind == "file":
+        position, director, spacing, closed = read_shape(shape, folder)
+    else:
+        position, director = FORMULAS[shape.kind](shape)
+        spacing, closed = shape.ds, shape.is_closed
+    return *place(position, director, shape), spacing, closed
+
+
+def _tables(case, built):
+    count = np.array([rod[0].shape[1] for rod in built], dtype=np.int64)
+    return Rods(
+        names=tuple(case.rods),
+        first=np.concatenate([[0], np.cumsum(count)[:-1]]).astype(np.int64),
+        count=count,
+        closed=np.array([rod[3] for rod in built], dtype=np.bool_),
+        spacing=np.array([rod[2] for rod in built], dtype=float),
+        moduli=np.array([rod.moduli.values for rod in case.rods.values()], dtype=float).T.copy(),
+    )
+
+
+def _epsilon(case, rods):
+    """Return epsilon as a length, and the problem of spacings that differ, if they do."""
+    epsilon = case.fluid.epsilon
+    if isinstance(epsilon, float):
+        return epsilon, []
+    ds = rods.spacing
+    problems = []
+    if ds.max() - ds.min() > 1e-9 * ds.max():
+        listed = ", ".join(f"{n} {v:.6g}" for n, v in zip(rods.names, ds, strict=True))
+        reason = f"the rods' spacings differ ({listed}): give epsilon as a length"
+        problems = [case.source.problem(("fluid", "epsilon"), reason)]
+    return float(epsilon.spacings * ds[0]), problems
+
+
+def _plane_problems(case, rods, position, director):
+    """A planar scene lies in one plane of constant x with D^1 = +-x everywhere."""
+    limit = PLANE_TOLERANCE * rods.lengths.max()
+    problems = []
+    for r, name in enumerate(rods.names):
+        nodes = slice(int(rods.first[r]), int(rods.first[r] + rods.count[r]))
+        off_plane = np.abs(position[0, nodes] - position[0, 0]).max()
+        tilt = np.abs(np.abs(director[0, 0, nodes]) - 1.0).max()
+        if off_plane > limit:
+            plane = f"x = {position[0, 0]:.6g}"
+            reason = f"not planar: rod '{name}' leaves the plane {plane} by {off_plane:.3g}"
+        elif tilt > PLANE_TOLERANCE:
+            reason = f"not planar: D1 of rod '{name}' is not along x; drop 'plane' or turn the rod"
+        else:
+            continue
+        problems.append(case.source.problem(("plane",), reason))
+    return problems
+
+
+def _flattened(director):
+    """Remove what rounding left out of the plane, so that it stays exactly planar."""
+    flat = director.copy()
+    flat[0, 0] = np.sign(flat[0, 0])
+    flat[0, 1:] = 0.0
+    flat[1:, 0] = 0.0
+    return flat
+
+
+def _half_turns(case, rods, director):
+    problems = []
+    for r, name in enumerate(rods.names):
+        begin, end = int(rods.first[r]), int(rods.first[r] + rods.count[r])
+        triads = director[:, :, begin:end]
+        after = np.roll(triads, -1, axis=2)
+        trace = np.einsum("ick,ick->k", triads, after)[: int(rods.segments[r])]
+        if (1.0 + trace).min() < 4e-14:
+            k = int(np.argmin(trace))
+            reason = f"the triads of points {k} and {k + 1} are a half-turn apart: use more points"
+            problems.append(case.source.problem(("rods", name, "shape"), reason))
+    return problems
+
+
+def _tracers(case, rods, built):
+    """Return tracer positions (3, P) and the number of markers of each group."""
+    blocks, groups = [np.zeros((3, 0))], {}
+    for name, group in case.tracers.items():
+        if isinstance(group, tuple):
+            block = np.array(group, dtype=float).T
+        else:
+            position, director, _, closed = built[rods.names.index(group.rod)]
+            block = tube(group, position, director, closed)
+        blocks.append(block)
+        groups[name] = block.shape[1]
+    return np.ascontiguousarray(np.concatenate(blocks, axis=1)), groups

@@ -1,0 +1,110 @@
+"""Shapes of a case file -> positions and triads of one rod, numpy only.
+
+Every function returns position (3, M) and director (3, 3, M), [i, component, point]. The first
+point is at s = 0; points are at equal steps of arc length; D^3 is the unit tangent (for the
+perturbed straight rod of (40)-(43): nearly).
+"""
+
+import numpy as np
+
+
+def straight(shape):
+    """Eqs. (40)-(43): the z axis stretched by 1 + xi, triads turned about x by xi."""
+    s = np.arange(shape.points) * shape.ds
+    xi = shape.perturbation
+    position = np.zeros((3, shape.points))
+    position[2] = (1.0 + xi) * s
+    triad = np.array([[1, 0, 0], [0, np.cos(xi), -np.sin(xi)], [0, np.sin(xi), np.cos(xi)]])
+    return position, np.repeat(triad[:, :, None], shape.points, axis=2)
+
+
+def ring(shape):
+    """Eqs. (46)-(49): a circle in the x-y plane, triads twisted by xi sin(s/r_0)."""
+    angle = 2.0 * np.pi * np.arange(shape.points) / shape.points
+    twist = shape.twist_perturbation * np.sin(angle)
+    zero = np.zeros_like(angle)
+    radial = np.array([np.cos(angle), np.sin(angle), zero])
+    axial = np.array([zero, zero, zero + 1.0])
+    tangent = np.array([-np.sin(angle), np.cos(angle), zero])
+    first = np.cos(twist) * axial + np.sin(twist) * radial
+    second = -np.sin(twist) * axial + np.cos(twist) * radial
+    return shape.radius * radial, np.array([first, second, tangent])
+
+
+def helix(shape):
+    """A helix about z, right-handed for pitch > 0; D^1 is the binormal, D^2 minus the normal.
+
+    With these triads its own strain twist is (curvature, 0, torsion).
+    """
+    rise = shape.pitch / (2.0 * np.pi)
+    stride = np.hypot(shape.radius, rise)  # arc length per radian
+    angle = np.arange(shape.points) * shape.ds / stride
+    cos, sin, one = np.cos(angle), np.sin(angle), np.ones_like(angle)
+    position = np.array([shape.radius * cos, shape.radius * sin, rise * angle])
+    tangent = np.array([-shape.radius * sin, shape.radius * cos, rise * one]) / stride
+    outward = np.array([cos, sin, 0.0 * one])
+    return position, np.array([np.cross(outward, tangent, axis=0), outward, tangent])
+
+
+def sine(shape):
+    """y = amplitude sin(2 pi z / wavelength + phase) in the plane x = 0, D^1 = x."""
+    k = 2.0 * np.pi / shape.wavelength
+
+    def slope(z):
+        return shape.amplitude * k * np.cos(k * z + shape.phase)
+
+    z = _equal_arcs(slope, shape.points, shape.ds, shape.wavelength)
+    one, zero = np.ones_like(z), np.zeros_like(z)
+    position = np.array([zero, shape.amplitude * np.sin(k * z + shape.phase), z])
+    tangent = np.array([zero, slope(z), one]) / np.hypot(slope(z), 1.0)
+    first = np.array([one, zero, zero])
+    return position, np.array([first, np.cross(tangent, first, axis=0), tangent])
+
+
+def _equal_arcs(slope, points, ds, wavelength):
+    """Return z (points,) at equal arc steps ds of a curve with slope dy/dz, from z = 0.
+
+    Gauss-Legendre quadrature of the arc length over cells of 1/64 wavelength (error below
+    rounding), then Newton's method inside the cell of each point.
+    """
+    node, weight = np.polynomial.legendre.leggauss(12)
+
+    def arc(a, b):
+        middle, half = 0.5 * (a + b)[:, None], 0.5 * (b - a)[:, None]
+        return np.sum(weight * half * np.hypot(1.0, slope(middle + half * node)), axis=1)
+
+    target = np.arange(points) * ds
+    cell = min(wavelength / 64.0, max(ds * points, 1e-300))
+    edges = np.arange(int(np.ceil(target[-1] / cell)) + 2) * cell
+    total = np.concatenate([[0.0], np.cumsum(arc(edges[:-1], edges[1:]))])
+    left = np.clip(np.searchsorted(total, target, side="right") - 1, 0, len(edges) - 2)
+    z = edges[left] + (target - total[left]) / np.hypot(1.0, slope(edges[left]))
+    for _ in range(60):
+        change = (total[left] + arc(edges[left], z) - target) / np.hypot(1.0, slope(z))
+        z = np.clip(z - change, edges[left], edges[left + 1])
+        if np.max(np.abs(change)) < 1e-15 * max(target[-1], cell):
+            break
+    return z
+
+
+def place(position, director, shape):
+    """Turn a rod about the origin by ``shape.rotate``, then move it to ``shape.origin``."""
+    if shape.rotate is not None:
+        turn = rotation_matrix(shape.rotate.axis, np.radians(shape.rotate.degrees))
+        position = turn @ position
+        director = np.einsum("ab,ibk->iak", turn, director)
+    return position + np.asarray(shape.origin, float)[:, None], director
+
+
+def rotation_matrix(axis, angle):
+    """Rotation by ``angle`` (rad) about ``axis``, eq. (36), exact for whole quarter turns."""
+    e = np.asarray(axis, float) / np.linalg.norm(axis)
+    quarters = angle / (0.5 * np.pi)
+    cos, sin = np.cos(angle), np.sin(angle)
+    if abs(quarters - round(quarters)) < 1e-12:
+        cos, sin = np.round(cos), np.round(sin)
+    cross = np.array([[0, -e[2], e[1]], [e[2], 0, -e[0]], [-e[1], e[0], 0]])
+    return cos * np.eye(3) + (1.0 - cos) * np.outer(e, e) + sin * cross
+
+
+FORMULAS = {"straight": straight, "ring": ring, "helix": helix, "sine": sine}

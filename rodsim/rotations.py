@@ -1,0 +1,50 @@
+"""Rotations of all triads at once, and the rate of their rotation vectors.
+
+theta (3, N) is a rotation vector: axis times angle, in the laboratory frame. A step of any
+integrator is an increment (X - X_n, theta); the triads at its end are exp(theta x) D_n.
+"""
+
+import math
+
+from rodsim.jit import MAT, TRIADS, kernel
+
+
+@kernel(f"void({MAT}, {TRIADS}, {TRIADS})")
+def rotate(theta, D, out):
+    """out = exp(theta x) D: Rodrigues' formula (36), the identity where theta = 0.
+
+    theta (3, N); D, out (3, 3, N) with [i, component, point]; out may be D itself.
+    """
+    for k in range(theta.shape[1]):
+        tx, ty, tz = theta[0, k], theta[1, k], theta[2, k]
+        angle2 = tx * tx + ty * ty + tz * tz
+        if angle2 < 1e-8:  # series: the next terms are below 1e-19
+            a = 1.0 - angle2 / 6.0
+            b = 0.5 - angle2 / 24.0
+        else:
+            angle = math.sqrt(angle2)
+            a = math.sin(angle) / angle
+            half = math.sin(0.5 * angle) / angle
+            b = 2.0 * half * half
+        for i in range(3):
+            dx, dy, dz = D[i, 0, k], D[i, 1, k], D[i, 2, k]
+            cx, cy, cz = ty * dz - tz * dy, tz * dx - tx * dz, tx * dy - ty * dx
+            out[i, 0, k] = dx + a * cx + b * (ty * cz - tz * cy)
+            out[i, 1, k] = dy + a * cy + b * (tz * cx - tx * cz)
+            out[i, 2, k] = dz + a * cz + b * (tx * cy - ty * cx)
+
+
+@kernel(f"void({MAT}, {MAT})")
+def rotation_vector_rate(theta, w):
+    """Replace the angular velocity w by d theta/dt = w - 1/2 theta x w + 1/12 theta x (theta x w).
+
+    The series of the inverse differential of exp, cut after the terms that a method of order 4
+    needs; both arrays (3, N).
+    """
+    for k in range(theta.shape[1]):
+        tx, ty, tz = theta[0, k], theta[1, k], theta[2, k]
+        wx, wy, wz = w[0, k], w[1, k], w[2, k]
+        cx, cy, cz = ty * wz - tz * wy, tz * wx - tx * wz, tx * wy - ty * wx
+        w[0, k] = wx - 0.5 * cx + (ty * cz - tz * cy) / 12.0
+        w[1, k] = wy - 0.5 * cy + (tz * cx - tx * cz) / 12.0
+        w[2, k] = wz - 0.5 * cz + (tx * cy - ty * cx) / 12.0

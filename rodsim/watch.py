@@ -1,0 +1,58 @@
+"""Is the run still meaningful? Checked after every step; a run that is not stops by name."""
+
+import numpy as np
+
+from rodsim.errors import DivergedError, StepFailure
+from rodsim.integrators.step import Step
+from rodsim.rods.state import State
+
+FARTHEST = 1e3  # lengths of the scene: no rod drives itself that far in a run that works
+
+FIXED_STEP_REMEDY = (
+    "the fixed step is too long for this stiffness: halve time.step, or use integrator: rkc"
+)
+ADAPTIVE_REMEDY = (
+    "the motion is beyond the resolution of the rods: use more points, or a smaller time.tolerance"
+)
+
+
+class Watch:
+    """Checks that every value is finite and that no rod has left all bounds."""
+
+    def __init__(self, system, fixed_step: bool):
+        self.system = system
+        self.remedy = FIXED_STEP_REMEDY if fixed_step else ADAPTIVE_REMEDY
+        initial = system.scene.initial.position
+        self.centre = initial.mean(axis=1, keepdims=True)
+        extent = np.abs(initial - self.centre).max()
+        self.farthest = FARTHEST * max(extent, system.scene.length_scale)
+        self.last_good_frame = 0
+
+    def check(self, step: Step) -> None:
+        """Raise DivergedError if the state at the end of a step means nothing."""
+        state = step.end
+        for name, values in (("position", state.position), ("director", state.director)):
+            finite = np.isfinite(values).reshape(-1, values.shape[-1]).all(axis=0)
+            if not finite.all():
+                self._stop(step.number, step.start, f"{name} is not finite", int(finite.argmin()))
+        distance = np.abs(state.position - self.centre).max(axis=0)
+        if distance.max() > self.farthest:
+            what = f"position has left all bounds, {distance.max():.3g} from the start"
+            self._stop(step.number, step.start, what, int(distance.argmax()))
+
+    def stop(self, failure: StepFailure, number: int) -> None:
+        """Raise DivergedError for a step that the integrator could not make."""
+        self._stop(number, failure.state, str(failure), None)
+
+    def _stop(self, number: int, before: State, what: str, point: int | None) -> None:
+        turned = self.system.diagnose(before)
+        if turned >= 0:
+            point, what = turned, "the triad is a half-turn away from the next one"
+        place = ""
+        if point is not None:
+            rod, k = self.system.scene.rods.locate(point)
+            place = f", rod '{rod}', point {k}"
+        raise DivergedError(
+            f"diverged in step {number}, after t = {before.time:.6g}{place}: {what}.\n"
+            f"Last good frame: {self.last_good_frame}. Usual cause: {self.remedy}"
+        )

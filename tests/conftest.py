@@ -1,0 +1,18 @@
+"""Shared by all tests: the twins are importable, and tests that need the JIT say so."""
+
+import sys
+from pathlib import Path
+
+import numba
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+
+def pytest_collection_modifyitems(config, items):
+    chosen = config.getoption("-m")
+    for item in items:
+        if "long" in item.keywords and "long" not in chosen:
+            item.add_marker(pytest.mark.skip(reason="takes minutes: pytest -m long"))
+        if "compiled" in item.keywords and numba.config.DISABLE_JIT:
+            item.add_marker(pytest.mark.skip(reason="needs compiled kernels"))

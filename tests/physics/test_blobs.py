@@ -1,0 +1,78 @@
+"""The scalars of both blobs against their defining identities, by quadrature and differences."""
+
+import numpy as np
+import pytest
+import twins
+from scipy.integrate import quad
+
+from rodsim.fluid.blobs import BLOBS, dipole_scalars, stokeslet_scalars
+
+EPSILON = 0.37
+DISTANCES = [0.05, 0.4, 1.3, 6.0]
+both_blobs = pytest.mark.parametrize("blob", BLOBS)
+
+
+def fast_scalars(blob, r, e):
+    """The product's formulas, run as plain Python."""
+    stokeslet = getattr(stokeslet_scalars, "py_func", stokeslet_scalars)
+    dipole = getattr(dipole_scalars, "py_func", dipole_scalars)
+    values = *stokeslet(BLOBS[blob], r * r, e * e), *dipole(BLOBS[blob], r * r, e * e)
+    return np.array(values) / (8 * np.pi)
+
+
+@both_blobs
+@pytest.mark.parametrize("r", [0.0, *DISTANCES])
+def test_agree_with_the_printed_rational_functions(blob, r):
+    # Both are exact; the difference is rounding of about ten operations.
+    assert fast_scalars(blob, r, EPSILON) == pytest.approx(
+        twins.scalars(blob, r, EPSILON), rel=2e-14, abs=1e-15
+    )
+
+
+def test_values_at_a_point_published_with_the_numerics():
+    # mu = eps = 1, x = (1, 2, 2); nine printed digits.
+    expected = [0.0138405333, 0.00125823030, 0.00289392970, -0.00270519515, 0.000943672727]
+    assert fast_scalars("algebraic7", 3.0, 1.0) == pytest.approx(expected, rel=5e-9)
+
+
+@both_blobs
+def test_blob_integrates_to_one(blob):
+    total, _ = quad(
+        lambda r: 4 * np.pi * r**2 * twins.psi(blob, r, EPSILON), 0, np.inf, epsabs=1e-11
+    )
+    assert total == pytest.approx(1.0, abs=1e-8)
+
+
+@both_blobs
+@pytest.mark.parametrize("r", DISTANCES)
+def test_q_is_the_enclosed_blob(blob, r):
+    """Delta G = psi gives G' = (1/r^2) int_0^r psi x^2 dx, so Q = G'/r = enclosed/(4 pi r^3)."""
+    q = fast_scalars(blob, r, EPSILON)[2]
+    assert q == pytest.approx(twins.enclosed(blob, r, EPSILON) / (4 * np.pi * r**3), rel=1e-11)
+
+
+@both_blobs
+@pytest.mark.parametrize("r", DISTANCES)
+def test_identities_between_the_scalars(blob, r):
+    """D1 = psi - Q; D2 = -Q'/r; 3 Q + r Q' = psi; div u = 0: H1' + 4 r H2 + r^2 H2' = 0."""
+    h = 1e-4 * r
+
+    def slope(i):  # central difference of order 4: relative error about 1e-13
+        f = [fast_scalars(blob, r + k * h, EPSILON)[i] for k in (-2, -1, 1, 2)]
+        return (f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * h)
+
+    h1, h2, q, d1, d2 = fast_scalars(blob, r, EPSILON)
+    psi = twins.psi(blob, r, EPSILON)
+    size = abs(q)
+    assert d1 == pytest.approx(psi - q, abs=1e-12 * size)
+    assert d2 * r == pytest.approx(-slope(2), abs=1e-9 * size / r)
+    assert 3 * q + r * slope(2) == pytest.approx(psi, abs=1e-9 * size)
+    assert slope(0) + 4 * r * h2 + r**2 * slope(1) == pytest.approx(0.0, abs=1e-9 * h1 / r)
+
+
+@both_blobs
+def test_far_away_they_are_the_singular_stokeslet_rotlet_and_dipole(blob):
+    r = 1e4 * EPSILON
+    expected = np.array([1 / r, 1 / r**3, 2 / r**3, -2 / r**3, 6 / r**5]) / (8 * np.pi)
+    # The next term is of relative order (eps/r)^2 = 1e-8 with factors up to 4.
+    assert fast_scalars(blob, r, EPSILON) == pytest.approx(expected, rel=5e-8)
