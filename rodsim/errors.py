@@ -48,7 +48,7 @@ class UsageError(RodsimError):
 
 
 class DivergedError(RodsimError):
-    """The run left the region where numbers mean anything; the message says where and what to do."""
+    """The run stopped making sense; the message says where and what to do."""
 
     exit_code = 3
 

@@ -1,0 +1,142 @@
+"""Checks across sections: what no single key can get wrong.
+
+Each check yields findings (path, reason). They run on whatever sections validated, so that all
+problems of a file are reported at once; sections that did not are None.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from rodsim.case.expressions import Expression
+from rodsim.case.model import Case, Rod, Spacings, Time, Tube
+from rodsim.case.words import did_you_mean
+from rodsim.case.yaml_text import Path
+
+Finding = tuple[Path, str]
+MOST_FRAMES = 10_000_000
+MOST_SAMPLES = 10_000
+WHOLE = 1e-9  # relative; how near a multiple of the step must be
+NO_REST_STATE = 2.0
+COARSE = 1.0
+
+
+def check(case: Case, rod_names: Iterable[str]) -> tuple[list[Finding], list[Finding]]:
+    """Return (errors, warnings) of a case, some sections of which may be None.
+
+    ``rod_names`` are all rods of the file, also those that did not validate.
+    """
+    errors = [*_rods(case), *_tracers(case, list(rod_names))]
+    if case.time is not None:
+        errors += _method(case.time)
+        if case.output is not None:
+            errors += _frames(case)
+    warnings: list[Finding] = []
+    for name, rod in (case.rods or {}).items():
+        if rod.shape.ds is None or (case.parameters is None and _has_expression(rod)):
+            continue
+        end = case.time.end if case.time else 0.0
+        found = check_strain_twist(rod, rod.shape.ds, rod.shape.segments, end)
+        errors += [(("rods", name, *path), reason) for path, reason in found[0]]
+        warnings += [(("rods", name, *path), reason) for path, reason in found[1]]
+    return errors, warnings
+
+
+def check_strain_twist(
+    rod: Rod, ds: float, segments: int, end: float
+) -> tuple[list[Finding], list[Finding]]:
+    """Return (errors, warnings) of a rod's strain twist; paths start below the rod.
+
+    Taken at the segments' midpoints s = (k + 1/2) ds, at t = 0 and t = end: every entry must be
+    finite there, and abs(Omega) ds <= 2. A discrete strain is 2 sin(theta/2)/ds, theta the angle
+    between neighbouring triads, so no rest state has more.
+    """
+    count = min(segments, MOST_SAMPLES)
+    s = (np.floor(np.linspace(0, segments - 1, count)) + 0.5) * ds
+    for t in dict.fromkeys((0.0, end)):
+        omega = [_entry(entry, s, t) for entry in rod.strain_twist]
+        for i, values in enumerate(omega):
+            if not np.all(np.isfinite(values)):
+                at = s[~np.isfinite(values)][0]
+                return [(("strain_twist", i), f"is not finite at s = {at:.4g}, t = {t:g}")], []
+        with np.errstate(all="ignore"):
+            angle = np.sqrt(sum(values**2 for values in omega)) * ds
+        largest, at = float(np.max(angle)), s[np.argmax(angle)]
+        found = f"abs(Omega) ds = {largest:.4g} at s = {at:.4g}, t = {t:g}"
+        if not largest <= NO_REST_STATE:
+            advice = "no rest state (the discrete strain is 2 sin(theta/2)/ds): use a smaller ds"
+            return [(("strain_twist",), f"{found}: above {NO_REST_STATE:g} there is {advice}")], []
+        if largest > COARSE:
+            return [], [(("strain_twist",), f"{found}: the rod is coarse: use a smaller ds")]
+    return [], []
+
+
+def _entry(entry: float | Expression, s: np.ndarray, t: float) -> np.ndarray:
+    return entry(s, t) if isinstance(entry, Expression) else np.full(s.shape, entry)
+
+
+def _has_expression(rod: Rod) -> bool:
+    return any(isinstance(entry, Expression) for entry in rod.strain_twist)
+
+
+def _method(time: Time) -> Iterator[Finding]:
+    """The step belongs to the methods of fixed step, the tolerance to the adaptive one."""
+    name = time.integrator
+    if name == "rkc":
+        if time.step is not None:
+            yield ("time", "step"), "is for euler and rk4: rkc chooses its steps by the tolerance"
+        return
+    if time.step is None:
+        yield ("time", "step"), f"missing: {name} needs the length of its steps"
+    if "tolerance" in time.model_fields_set:
+        yield ("time", "tolerance"), f"is for rkc: {name} has a fixed step and would ignore it"
+
+
+def _frames(case: Case) -> Iterator[Finding]:
+    """Frames lie within the run, are not too many, and fall on steps of fixed length."""
+    time, interval = case.time, case.interval
+    key = ("output", "interval")
+    if interval > time.end:
+        yield key, f"must be <= time.end = {time.end:g}"
+    elif time.end / interval > MOST_FRAMES:
+        yield key, f"would write {time.end / interval:.3g} frames: at most {MOST_FRAMES}"
+    if time.integrator == "rkc" or time.step is None:
+        return
+    yield from _multiple(("time", "end"), time.end, time)
+    default = "" if case.output.interval else f"the default, end/100 = {interval:.6g}, "
+    yield from _multiple(key, interval, time, default)
+
+
+def _multiple(path: Path, value: float, time: Time, start: str = "") -> Iterator[Finding]:
+    steps = value / time.step
+    if math.isfinite(steps) and round(steps) and abs(steps - round(steps)) <= WHOLE * steps:
+        return
+    reason = f"{start}must be a whole multiple of time.step = {time.step:g} for {time.integrator}"
+    near = f": try {round(steps) * time.step:.9g}" if math.isfinite(steps) and round(steps) else ""
+    yield path, reason + near
+
+
+def _rods(case: Case) -> Iterator[Finding]:
+    rods = case.rods or {}
+    if case.fluid is not None and isinstance(case.fluid.epsilon, Spacings):
+        known = {name: rod.shape.ds for name, rod in rods.items() if rod.shape.ds is not None}
+        if known and max(known.values()) > min(known.values()) * (1.0 + WHOLE):
+            each = ", ".join(f"{name} {ds:.6g}" for name, ds in known.items())
+            reason = f"the rods' spacings differ ({each}): give epsilon as a length"
+            yield ("fluid", "epsilon"), reason
+    if case.plane is not None:
+        for name, rod in rods.items():
+            for i in (1, 2):
+                if rod.strain_twist[i] != 0.0:
+                    reason = f"Omega_{i + 1} must be the number 0 where plane is {case.plane}"
+                    yield ("rods", name, "strain_twist", i), reason
+
+
+def _tracers(case: Case, rod_names: list[str]) -> Iterator[Finding]:
+    for name, group in (case.tracers or {}).items():
+        if isinstance(group, Tube) and group.rod not in rod_names:
+            hint = did_you_mean(group.rod, rod_names) or f": the rods are {', '.join(rod_names)}"
+            yield ("tracers", name, "rod"), f"no such rod{hint}"

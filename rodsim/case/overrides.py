@@ -1,0 +1,89 @@
+"""``--set a.b.c=value``: change the data of a case before it is validated."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rodsim.case.places import Place, named
+from rodsim.case.source import OVERRIDE, Source
+from rodsim.case.words import clipped, did_you_mean, dotted, one_of
+from rodsim.case.yaml_text import parse
+from rodsim.errors import CaseError, Problem
+
+
+class _Refused(Exception):
+    """Why an override cannot be applied."""
+
+
+def apply_overrides(source: Source) -> list[Problem]:
+    """Apply ``source.overrides`` in order to ``source.data``; return what is wrong with them.
+
+    Keys that are there are replaced, or removed by ``null``. Keys that are not are added if the
+    model has them; new rods, tracer groups and parameters are refused.
+    """
+    problems = []
+    for text in source.overrides:
+        key, equals, value = text.partition("=")
+        key = key.strip()
+        try:
+            if not equals or not key:
+                raise _Refused("must be written key=value, as in --set time.end=0.01")
+            if not value.strip():
+                raise _Refused("has no value after '=': write null to remove the key")
+            parts = tuple(key.split("."))
+            data, _ = parse(value, lambda line: OVERRIDE, parts)
+            _put(source, parts, data)
+        except _Refused as refused:
+            shown_key = clipped(key if equals else text)
+            problems.append(Problem(OVERRIDE, shown_key, None, str(refused)))
+        except CaseError as error:
+            problems += error.problems
+    return problems
+
+
+def _put(source: Source, parts: tuple[str, ...], value: Any) -> None:
+    """Walk to the last key but one, adding what the model knows on the way, and set the last."""
+    node, place, path = source.data, source.root, ()
+    for part in parts[:-1]:
+        key, below = _step(node, place, part, path)
+        path = (*path, key)
+        if isinstance(node, dict) and node.get(key) is None:
+            is_list = isinstance(below.default, tuple)
+            node[key] = list(below.default) if is_list else {}
+            source.lines[path] = None
+        node, place = node[key], below
+    key, _ = _step(node, place, parts[-1], path)
+    path = (*path, key)
+    for known in [known for known in source.lines if known[: len(path)] == path]:
+        del source.lines[known]
+    if value is None and isinstance(node, dict):
+        node.pop(key, None)
+    else:
+        node[key] = value
+    source.lines[path] = None
+
+
+def _step(node: Any, place: Place, part: str, path: tuple) -> tuple[str | int, Place]:
+    """Return the key or index one step on, and what the model expects there."""
+    here = dotted(path) or "the case"
+    if isinstance(node, list):
+        if not part.isdecimal() or int(part) >= len(node):
+            raise _Refused(f"{here} has the entries 0 to {len(node) - 1}")
+        key = int(part)
+    elif isinstance(node, dict):
+        key = part
+        if named(place) and key not in node:
+            raise _Refused(f"{here} has no '{clipped(key)}'{_near(key, list(node))}")
+    else:
+        raise _Refused(f"{here} is a single value here: set it as a whole")
+    below = place.child(key, node)
+    if below is None:
+        keys = place.keys(node)
+        raise _Refused(f"unknown key{_near(part, keys)}")
+    return key, below
+
+
+def _near(word: str, choices: list[str]) -> str:
+    if not choices:
+        return ": there is none"
+    return did_you_mean(word, choices) or f": there is {one_of(list(choices))}"

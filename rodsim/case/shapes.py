@@ -1,0 +1,160 @@
+"""The shapes a rod can start from. ``rods/`` turns them into points and triads."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from rodsim.case.fields import (
+    ClosedPoints,
+    Direction,
+    Flag,
+    Integer,
+    Model,
+    NotNegative,
+    NotZero,
+    Number,
+    OpenPoints,
+    Positive,
+    Vector,
+    quantity,
+)
+
+
+class Rotate(Model):
+    """A turn about an axis through the origin, before the shape is moved to its place."""
+
+    axis: Direction = Field(description="direction of the axis, of any length but 0")
+    degrees: Number = quantity("degrees", "angle, right-handed about the axis")
+
+
+class Placed(Model):
+    """What all shapes share."""
+
+    rotate: Rotate | None = Field(None, description="turn about the origin, done first")
+    origin: Vector = quantity("length", "then the shape is moved by this", default=(0.0, 0.0, 0.0))
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the last point is joined to the first."""
+        return False
+
+    @property
+    def ds(self) -> float | None:
+        """Arc length between neighbouring points, or None where only a file knows it."""
+        return self.length / (self.points - 1)
+
+    @property
+    def segments(self) -> int | None:
+        """Number of segments, or None where only a file knows it."""
+        return self.points if self.is_closed else self.points - 1
+
+
+class Straight(Placed):
+    """A straight rod along +z from 0, stretched and tilted by the perturbation (eqs 40-43)."""
+
+    kind: Literal["straight"]
+    points: OpenPoints = Field(description="number of points")
+    length: Positive | None = quantity("length", "arc length; or give spacing", default=None)
+    spacing: Positive | None = quantity("length", "between points; or give length", default=None)
+    perturbation: Number = Field(0.0, description="xi of eqs 40-43")
+
+    @model_validator(mode="after")
+    def _one_size(self):
+        if (self.length is None) == (self.spacing is None):
+            raise ValueError("give length or spacing" + (", not both" if self.length else ""))
+        return self
+
+    @property
+    def ds(self) -> float:
+        """Arc length between neighbouring points."""
+        return self.length / (self.points - 1) if self.spacing is None else self.spacing
+
+
+class Ring(Placed):
+    """A circle in the plane z = 0, with the perturbed twist of eqs 46-49."""
+
+    kind: Literal["ring"]
+    radius: Positive = quantity("length", "radius of the circle")
+    points: ClosedPoints = Field(description="number of points")
+    twist_perturbation: Number = Field(0.0, description="xi of eqs 46-49")
+
+    @property
+    def is_closed(self) -> bool:
+        """A ring is closed."""
+        return True
+
+    @property
+    def ds(self) -> float:
+        """Arc length between neighbouring points: 2 pi radius / points."""
+        return 2.0 * math.pi * self.radius / self.points
+
+
+class Helix(Placed):
+    """A helix about the z axis: right-handed for pitch > 0, left-handed for pitch < 0."""
+
+    kind: Literal["helix"]
+    radius: Positive = quantity("length", "distance of the centreline from the axis")
+    pitch: NotZero = quantity("length", "rise per turn; negative is left-handed")
+    points: OpenPoints = Field(description="number of points")
+    length: Positive = quantity("length", "arc length")
+
+
+class Sine(Placed):
+    """A sine wave y(z) in the y-z plane, with D1 along x."""
+
+    kind: Literal["sine"]
+    amplitude: NotNegative = quantity("length", "largest abs(y)")
+    wavelength: Positive = quantity("length", "period along z")
+    phase: Number = quantity("angle", "phase at z = 0", default=0.0)
+    points: OpenPoints = Field(description="number of points")
+    length: Positive = quantity("length", "arc length")
+
+
+class FileShape(Placed):
+    """Points and triads from an earlier output, or from a text table x y z D1 D2 D3."""
+
+    kind: Literal["file"]
+    path: str = Field(min_length=1, description="output file or text table")
+    frame: Integer | None = Field(None, description="frame of the output; -1 is the last")
+    rod: str | None = Field(None, description="which rod of the output")
+    spacing: Positive | None = quantity("length", "rest spacing of a text table", default=None)
+    closed: Flag = Field(False, description="join the last point of a text table to the first")
+
+    @model_validator(mode="after")
+    def _table_or_output(self):
+        if self.spacing is not None and (self.frame is not None or self.rod is not None):
+            raise ValueError("spacing is for a text table, frame and rod are for an output file")
+        return self
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether a text table is closed; an output file says it itself."""
+        return self.closed
+
+    @property
+    def ds(self) -> None:
+        """Not known before the file is read."""
+        return None
+
+    @property
+    def segments(self) -> None:
+        """Not known before the file is read."""
+        return None
+
+
+def _kind_tag(value: Any) -> str | None:
+    kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
+    return f"<{kind}>" if isinstance(kind, str) else None
+
+
+Shape = Annotated[
+    Annotated[Straight, Tag("<straight>")]
+    | Annotated[Ring, Tag("<ring>")]
+    | Annotated[Helix, Tag("<helix>")]
+    | Annotated[Sine, Tag("<sine>")]
+    | Annotated[FileShape, Tag("<file>")],
+    Discriminator(_kind_tag),
+]

@@ -1,0 +1,81 @@
+"""Where a case came from: turns key paths into file:line, values and units for messages."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from rodsim.case.fields import ANGLES, DIMENSIONS
+from rodsim.case.places import Place
+from rodsim.case.words import clipped, dotted, shown
+from rodsim.case.yaml_text import Lines, Path
+from rodsim.errors import Problem
+from rodsim.units import unit_text
+
+OVERRIDE = "--set"
+
+
+@dataclass
+class Source:
+    """A case file as read: ``lines`` has None for what an override has set."""
+
+    path: str = "case"
+    text: str = ""
+    overrides: tuple[str, ...] = ()
+    data: Any = None
+    lines: Lines = field(default_factory=dict)
+    root: Place | None = None  # what the model knows; None knows nothing
+
+    def where(self, path: Path) -> str:
+        """Return ``file:line`` of a key, or of the mapping it would be in, or ``--set``."""
+        for end in range(len(path), -1, -1):
+            if path[:end] in self.lines:
+                line = self.lines[path[:end]]
+                return OVERRIDE if line is None else f"{self.path}:{line}"
+        return self.path
+
+    def value(self, path: Path) -> Any:
+        """Return what the file has at a path, or None."""
+        node = self.data
+        for part in path:
+            node = child(node, part)
+        return node
+
+    def place(self, path: Path) -> Place | None:
+        """Return what the model expects at a path, or None where it has no such key."""
+        place, node = self.root, self.data
+        for part in path:
+            place = place and place.child(part, node)
+            node = child(node, part)
+        return place
+
+    def unit(self, path: Path) -> str:
+        """Return the unit a number at this path is read in, in the case's own unit names."""
+        place = self.place(path)
+        if place is None or not place.dimension or isinstance(self.value(path), dict | list):
+            return ""
+        if place.dimension in ANGLES:
+            return ANGLES[place.dimension]
+        names = {}
+        for name in ("length", "mass", "time"):
+            given = self.value(("units", name))
+            names[name] = clipped(given) if isinstance(given, str) else self._default_unit(name)
+        return unit_text(DIMENSIONS[place.dimension], names)
+
+    def _default_unit(self, name: str) -> str:
+        return self.root.child("units").child(name).default
+
+    def problem(self, key_path: str | Path, reason: str) -> Problem:
+        """Return a Problem at a key: its place, its value, and its unit if it is a number."""
+        path = tuple(key_path.split(".")) if isinstance(key_path, str) else tuple(key_path)
+        value, unit = shown(self.value(path)), self.unit(path)
+        return Problem(self.where(path), dotted(path), value, reason, unit)
+
+
+def child(node: Any, part: str | int) -> Any:
+    """Return the entry of a mapping or list, or None where there is none."""
+    if isinstance(node, dict):
+        return node.get(part)
+    if isinstance(node, list) and isinstance(part, int) and -len(node) <= part < len(node):
+        return node[part]
+    return None

@@ -1,0 +1,52 @@
+"""How keys and values look in a message, and the 'did you mean' of every message."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+from typing import Any
+
+LONGEST_WORD = 60  # comparing words is quadratic; nobody mistypes longer names than this
+LONGEST_VALUE = 60
+
+
+def did_you_mean(word: str, choices: Iterable[str]) -> str:
+    """Return ``": did you mean 'radius'?"`` for a near miss, else ``""``."""
+    if len(word) > LONGEST_WORD:
+        return ""
+    lowered = {choice.lower(): choice for choice in choices}
+    close = get_close_matches(word.lower(), lowered, n=1, cutoff=0.6)
+    return f": did you mean '{lowered[close[0]]}'?" if close else ""
+
+
+def one_of(choices: Iterable[str]) -> str:
+    """Return ``a, b or c``."""
+    *most, last = choices
+    return f"{', '.join(most)} or {last}" if most else last
+
+
+def clipped(text: str, most: int = LONGEST_VALUE) -> str:
+    """Return the text on one line, without control characters, and not too long."""
+    text = text if len(text) <= most else text[: most - 3] + "..."
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
+def dotted(path: Iterable[str | int]) -> str:
+    """Return a path as users write it: ``rods.tail.strain_twist.0``."""
+    return ".".join(clipped(str(part)) for part in path)
+
+
+def shown(value: Any) -> str | None:
+    """Return a value of a case file as YAML would have it, clipped; None for nothing."""
+    return None if value is None else clipped(_yaml(value))
+
+
+def _yaml(value: Any) -> str:
+    if isinstance(value, dict):
+        inside = (f"{key}: {_yaml(item)}" for key, item in list(value.items())[:LONGEST_VALUE])
+        return "{" + ", ".join(inside) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(_yaml(item) for item in value[:LONGEST_VALUE]) + "]"
+    if isinstance(value, bool) or value is None:
+        return {True: "true", False: "false", None: "null"}[value]
+    return str(value)

@@ -1,0 +1,49 @@
+"""Scenes of the shipped configs, changed by ``--set`` strings, and runs of them in memory."""
+
+from pathlib import Path
+
+import numpy as np
+
+from rodsim.case import load_case
+from rodsim.dynamics import RodSystem
+from rodsim.integrators import make_integrator
+from rodsim.rods import build_scene
+
+ROOT = Path(__file__).parent.parent
+CONFIGS = ROOT / "configs"
+REFERENCE = Path(__file__).parent / "reference"
+
+
+def load(config, *overrides):
+    return load_case(CONFIGS / f"{config}.yaml", overrides)
+
+
+def fixed(method, step):
+    """Overrides that choose a fixed-step method; configs have a tolerance, which it refuses."""
+    return f"time.integrator={method}", "time.tolerance=null", f"time.step={step!r}"
+
+
+def system_of(config, *overrides):
+    case = load(config, *overrides)
+    return case, RodSystem(build_scene(case))
+
+
+def final_state(config, *overrides):
+    """Run a config to its end in memory; return (last state, system, integrator)."""
+    case, system = system_of(config, *overrides)
+    integrator = make_integrator(case.time, system)
+    for step in integrator.steps(system.scene.initial, case.time.end):
+        pass
+    return step.end, system, integrator
+
+
+def reference(name):
+    """Return position (3, M) and director (3, 3, M) of a stored reference solution."""
+    table = np.loadtxt(REFERENCE / f"{name}.txt")
+    return table[:, :3].T, table[:, 3:].reshape(-1, 3, 3).transpose(1, 2, 0)
+
+
+def difference(state, other):
+    """Largest difference of (positions, directors) of two states."""
+    position = abs(state.position - other.position).max()
+    return position, abs(state.director - other.director).max()
