@@ -19,8 +19,8 @@ def load(config, *overrides):
 
 
 def fixed(method, step):
-    """Overrides that choose a fixed-step method; configs have a tolerance, which it refuses."""
-    return f"time.integrator={method}", "time.tolerance=null", f"time.step={step!r}"
+    """Overrides that choose a fixed-step method."""
+    return f"time.integrator={method}", f"time.step={step!r}"
 
 
 def system_of(config, *overrides):

@@ -59,9 +59,8 @@ _ODD_CHARACTER_HINTS = {
     '"': "text in quotes is not allowed",
 }
 
-Value = np.float64
 Function = Callable[[np.ndarray, np.float64], np.ndarray]
-Node = Value | Function  # constants are folded: parameters cost nothing later
+Node = np.float64 | Function  # constants are folded: parameters cost nothing later
 
 
 class ExpressionError(ValueError):
@@ -203,10 +202,8 @@ class _Builder:
         if name in FUNCTIONS:
             raise ExpressionError(f"'{name}' is a function: write {name}(...)")
         hint = did_you_mean(name, (*RESERVED, *self.parameters))
-        raise ExpressionError(f"unknown name '{clipped(name)}'{hint or self._known()}")
-
-    def _known(self) -> str:
-        return f": it can use {one_of(['s', 't', 'pi', *self.parameters])}"
+        known = f": it can use {one_of(['s', 't', 'pi', *self.parameters])}"
+        raise ExpressionError(f"unknown name '{clipped(name)}'{hint or known}")
 
     def _operator(self, operator: ast.AST) -> Callable:
         kind = type(operator)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import AfterValidator, BaseModel, Discriminator, Field, PrivateAttr, Tag
 
 from rodsim.case.expressions import Expression
@@ -175,9 +176,13 @@ class Case(Model):
 
     @property
     def interval(self) -> float:
-        """Simulated time between frames."""
-        given = self.output.interval
-        return self.time.end / DEFAULT_FRAMES if given is None else given
+        """Simulated time between frames: by default end/100, for fixed steps in whole steps."""
+        if self.output.interval is not None:
+            return self.output.interval
+        share = self.time.end / DEFAULT_FRAMES
+        if self.time.integrator == "rkc" or self.time.step is None:
+            return share
+        return max(1.0, float(np.ceil(share / self.time.step * (1.0 - 1e-9)))) * self.time.step
 
     def problem(self, key_path: str | tuple, reason: str) -> Problem:
         """Return a Problem at a key, with its file:line, value and unit, for later checks."""

@@ -1,24 +1,36 @@
-"""Names, shapes and units of the output file: one table that writer, reader and docs share.
+"""Names, shapes and dimensions in the output file: what the writer, reader and docs share.
 
-T frames, N points of all rods one after another, R rods, P tracers. Dimensions are exponents of
-(mass, length, time).
+T frames, N points of all rods one after another, R rods, P tracers. A dimension is the exponents
+of (mass, length, time).
 """
 
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+
+import numpy as np
 
 FILETYPE = "rodsim"
 FORMAT = 1
-STATUS_BYTES = 16  # fixed length: changed in place, never moved
+STATUS = ("running", "finished", "stopped", "diverged")
+TEXT_BYTES = 32  # texts that change have a fixed length: they are changed in place, never moved
 
+TRAJECTORY = "particles/trajectory"
+TRACERS = "particles/tracers/position"
+OBSERVABLES = "observables"
+CLOCK = f"{TRAJECTORY}/position"  # where time and step live; every other group links to them
+
+TIME, LENGTH, FORCE, ENERGY = (0, 0, 1), (0, 1, 0), (1, 1, -2), (1, 2, -2)
 FIELDS = {
-    "position": (0, 1, 0),
+    "position": LENGTH,
     "director": (0, 0, 0),
     "velocity": (0, 1, -1),
     "angular_velocity": (0, 0, -1),
-    "force": (1, 1, -2),
-    "torque": (1, 2, -2),
+    "force": FORCE,  # of a point on the fluid
+    "torque": ENERGY,
 }
-ENERGY = (1, 2, -2)
 PER_ROD = {
     "bending_energy": ENERGY,
     "twisting_energy": ENERGY,
@@ -26,13 +38,28 @@ PER_ROD = {
     "stretch_energy": ENERGY,
     "kinetic_energy": ENERGY,  # only where the case gives a density
     "power": (1, 2, -3),
-    "length": (0, 1, 0),
+    "length": LENGTH,
 }
-BALANCES = {"net_force": (1, 1, -2), "net_torque": ENERGY}
+BALANCES = {"net_force": FORCE, "net_torque": ENERGY}  # of all rods together: a vector
 
-TRAJECTORY = "particles/trajectory"
-TRACERS = "particles/tracers/position"
-CLOCK = f"{TRAJECTORY}/position"  # where time and step live; all other groups link to them
+# Attributes of /runtime exist from the start, so that setting them never moves anything in the
+# file; what is not known yet is NaN, -1 or an empty text, and left out by the reader.
+UNKNOWN = {float: np.float64(np.nan), int: np.int64(-1), str: np.bytes_(b"")}
+RUNTIME = {
+    "wall_seconds": float,
+    "compile_seconds": float,
+    "solve_seconds": float,
+    "sum_seconds": float,
+    "elasticity_seconds": float,
+    "output_seconds": float,
+    "evaluations": int,
+    "steps_accepted": int,
+    "steps_rejected": int,
+    "max_stages": int,
+    "spectral_radius": float,
+    "threads": int,
+    "threading_layer": str,
+}
 
 
 @dataclass(frozen=True)
@@ -46,7 +73,7 @@ class CaseText:
 
 @dataclass(frozen=True)
 class RodRecord:
-    """What ``/rods/<name>`` holds. moduli: a_1 a_2 a_3 b_1 b_2 b_3; spacing: unstressed."""
+    """What ``/rods/<name>`` holds: its nodes from ``first`` on, its moduli a1 a2 a3 b1 b2 b3."""
 
     name: str
     first: int
@@ -56,6 +83,54 @@ class RodRecord:
     moduli: tuple[float, ...]
 
 
-def field_shape(name: str, points: int) -> tuple[int, ...]:
-    """Return the shape of one frame of a field: (N, 3), for the director (N, 3, 3)."""
-    return (points, 3, 3) if name == "director" else (points, 3)
+@dataclass(frozen=True)
+class Series:
+    """One quantity over time: where it is stored, the shape of one frame, its dimension."""
+
+    name: str
+    where: str
+    shape: tuple[int, ...]
+    dimension: tuple[int, int, int]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """All that is known of an output file before the run: its texts, its sizes, its times."""
+
+    case: CaseText
+    rods: list[RodRecord]
+    times: np.ndarray
+    tracers: int
+    fields: tuple[str, ...]
+    units: dict[str, str]
+    density: bool
+
+    @property
+    def points(self) -> int:
+        """Number N of points of all rods."""
+        return sum(rod.count for rod in self.rods)
+
+    def fields_stored(self) -> Iterator[Series]:
+        """Yield what is stored of every point and tracer; the position always is."""
+        for name, dimension in FIELDS.items():
+            if name in self.fields or name == "position":
+                shape = (self.points, 3, 3) if name == "director" else (self.points, 3)
+                yield Series(name, f"{TRAJECTORY}/{name}", shape, dimension)
+        if self.tracers:
+            yield Series("tracers", TRACERS, (self.tracers, 3), LENGTH)
+
+    def observables_stored(self) -> Iterator[Series]:
+        """Yield what is stored of every rod, or of all together."""
+        for name, dimension in PER_ROD.items():
+            if self.density or name != "kinetic_energy":
+                yield Series(name, f"{OBSERVABLES}/{name}", (len(self.rods),), dimension)
+        for name, dimension in BALANCES.items():
+            yield Series(name, f"{OBSERVABLES}/{name}", (3,), dimension)
+
+    def stored(self) -> list[Series]:
+        """Return every series of the file."""
+        return [*self.fields_stored(), *self.observables_stored()]
+
+    def value_bytes(self) -> int:
+        """Return the room that the values of all frames take."""
+        return 8 * len(self.times) * sum(math.prod(series.shape) for series in self.stored())

@@ -1,5 +1,8 @@
 """Which file a run may write: nothing is lost, and no two runs write the same file."""
 
+from __future__ import annotations
+
+import glob
 import json
 import os
 import socket
@@ -9,80 +12,122 @@ from rodsim.errors import FileError
 
 
 def free_name(path: Path) -> Path:
-    """Return the next free name for an output that has to make room: ``out.1.h5``, ..."""
+    """Return the next free name an existing output can be moved to: ``out.1.h5``, ``out.2.h5``."""
     number = 1
-    while (candidate := path.with_name(f"{path.stem}.{number}{path.suffix}")).exists():
+    while os.path.lexists(moved := path.with_name(f"{path.stem}.{number}{path.suffix}")):
         number += 1
-    return candidate
+    return moved
+
+
+def temporary_name(path: Path) -> Path:
+    """Return the name to build under; removes what killed builds left. The caller has the lock."""
+    for leftover in path.parent.glob(f".{glob.escape(path.name)}.*.tmp"):
+        leftover.unlink()
+    return path.with_name(f".{path.name}.{os.getpid()}.tmp")
+
+
+def take_place(built: Path, path: Path, overwrite: bool) -> Path | None:
+    """Give a finished file its name; return where the output that had it went, if it was kept."""
+    moved = None
+    if os.path.lexists(path) and not overwrite:
+        moved = free_name(path)
+        os.rename(path, moved)
+    try:
+        os.replace(built, path)
+    except OSError:
+        if moved:
+            os.rename(moved, path)
+        raise
+    return moved
 
 
 class OutputLock:
-    """A file ``<output>.lock`` that names the host and the process that writes the output.
+    """A file ``<output>.lock`` that names the host and process writing the output.
 
-    The lock of a process that has ended on this host is taken over. A process is known by its
-    number and its start time, because numbers are used again.
+    The lock of a process that has ended on this host is taken over. A process is recognised by
+    its number and, where /proc tells it, its start time: numbers are used again.
     """
 
-    def __init__(self, path: Path):
-        self.path = path.with_name(path.name + ".lock")
-        self._output = path
+    def __init__(self, output: Path):
+        self.output = output
+        self.path = output.with_name(output.name + ".lock")
+        pid = os.getpid()
+        owner = {"host": socket.gethostname(), "pid": pid, "started": _process(pid)[1]}
+        self._text = json.dumps(owner)
 
     def acquire(self) -> None:
-        """Take the lock, or raise FileError that names who holds it."""
-        mine = {"host": socket.gethostname(), "pid": os.getpid(), "started": _started(os.getpid())}
-        for _ in range(3):
-            try:
-                handle = os.open(self.path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644)
-            except FileExistsError:
-                self._clear_if_stale()
-                continue
-            except OSError as error:
-                raise FileError(f"{self._output}: cannot write here: {error.strerror}") from error
-            with os.fdopen(handle, "w") as stream:
-                json.dump(mine, stream)
-            return
-        raise FileError(f"{self._output}: another process keeps taking {self.path.name}")
+        """Take the lock; raises FileError that names who has it."""
+        try:
+            if not self._create():
+                self._remove_stale()
+                if not self._create():
+                    raise FileError(f"{self.output}: another run has just started to write it")
+        except OSError as error:
+            raise FileError(f"{self.output}: cannot be written: {error.strerror}") from error
 
     def release(self) -> None:
-        """Give the lock back."""
-        self.path.unlink(missing_ok=True)
-
-    def _clear_if_stale(self):
+        """Give the lock back, unless someone else has it by now."""
         try:
-            holder = json.loads(self.path.read_text())
-            host, pid, started = holder["host"], int(holder["pid"]), holder["started"]
+            if self.path.read_text() == self._text:
+                self.path.unlink()
+        except (OSError, ValueError):
+            pass  # gone or not ours: nothing to give back
+
+    def _create(self):
+        try:
+            handle = os.open(self.path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644)
+        except FileExistsError:
+            return False
+        with os.fdopen(handle, "w") as stream:
+            stream.write(self._text)
+        return True
+
+    def _remove_stale(self):
+        try:
+            found = self.path.read_text()
+        except FileNotFoundError:
+            return  # given back since
+        self._refuse_if_alive(found)
+        # Renaming can succeed for one process only, so two cannot both take over the same lock.
+        aside = self.path.with_name(f"{self.path.name}.{os.getpid()}")
+        try:
+            os.rename(self.path, aside)
         except FileNotFoundError:
             return
-        except (ValueError, KeyError, TypeError, OSError) as error:
+        if aside.read_text() != found:  # another one took over between our two looks
+            os.rename(aside, self.path)
+            return
+        aside.unlink()
+
+    def _refuse_if_alive(self, found):
+        try:
+            owner = json.loads(found)
+            host, pid, started = str(owner["host"]), int(owner["pid"]), owner["started"]
+        except (ValueError, KeyError, TypeError):
             raise FileError(
-                f"{self._output}: {self.path.name} cannot be read; remove it if no run is writing"
-            ) from error
-        if host != socket.gethostname() or _started(pid) not in (None, started):
-            alive = host != socket.gethostname()
-        else:
-            alive = _started(pid) is not None or (started is None and _exists(pid))
-        if alive:
-            raise FileError(
-                f"{self._output}: process {pid} on host {host} is writing this file; "
-                f"if it is gone, remove {self.path.name}"
-            )
-        self.path.unlink(missing_ok=True)
+                f"{self.output}: its lock cannot be read; if no run writes it, remove {self.path}"
+            ) from None
+        if host == socket.gethostname():
+            alive, since = _process(pid)
+            if not alive or (None not in (started, since) and started != since):
+                return
+        raise FileError(
+            f"{self.output}: is being written by process {pid} on {host}; "
+            f"if that has ended, remove {self.path}"
+        )
 
 
-def _exists(pid):
+def _process(pid):
+    """Return whether a process runs, and its start in clock ticks since boot where that is told."""
+    try:
+        state, *numbers = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+        return state not in "ZX", int(numbers[18])
+    except (OSError, ValueError, IndexError):
+        pass
     try:
         os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
+    except (ProcessLookupError, OverflowError):
+        return False, None
     except PermissionError:
-        return True
-    return True
-
-
-def _started(pid):
-    """Return the start time of a process in clock ticks since boot, None if it cannot be told."""
-    try:
-        stat = Path(f"/proc/{pid}/stat").read_text()
-    except OSError:
-        return None
-    return int(stat.rpartition(")")[2].split()[19])
+        pass
+    return True, None

@@ -1,50 +1,48 @@
-"""Reads an output file, also of a run that goes on or was killed. Trusts nothing in it."""
+"""Reads an output file, also of a run that goes on or was killed."""
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
+from operator import index
 
-import h5py
 import numpy as np
 
 from rodsim.errors import FileError
 from rodsim.output import layout
-from rodsim.output.layout import CLOCK, TRACERS, TRAJECTORY, RodRecord
+from rodsim.output.checkpoint import SEAL, SLOTS, newest
+from rodsim.output.guarded import GuardedFile
+from rodsim.output.layout import CLOCK, OBSERVABLES, TRACERS, TRAJECTORY, RodRecord
 
 
 def open_trajectory(path) -> Trajectory:
-    """Open an output file of rodsim for reading; raises FileError in one line if it is not one.
+    """Open an output file for reading; raises FileError, in one line, if it cannot be trusted.
 
     >>> with open_trajectory("out.h5") as run:
     ...     run.time, run.position, run.observable("bending_energy")
     """
-    return Trajectory(Path(path))
+    return Trajectory(path)
 
 
 class Trajectory:
-    """The committed frames of an output file: T frames, N points, R rods. A context manager.
+    """The frames of an output file that were committed when it was opened. A context manager.
+
+    T frames, N points of all rods one after another, P tracers. Values are in the case's units.
 
     Attributes
     ----------
-    frames : T. time, step : (T,). position : (T, N, 3). director : (T, N, 3, 3), with
-    [t, point, i, :] = D^(i+1). tracers : (T, P, 3), P may be 0. rods : list of RodRecord.
-    status : running, finished, stopped or diverged. units : dict of unit names.
-    case_source, case_resolved : text; overrides : list of text. runtime : dict.
+    frames : T. points : N. time, steps : (T,), of each frame. rods : list of RodRecord, in order.
+    status : running, finished, stopped or diverged. version, created, format : of the file.
+    case_source, case_resolved : text. overrides, resumes : lists of text.
+    units : names of the units of ``length``, ``mass``, ``time``. runtime : what the run has cost.
     """
 
-    def __init__(self, path: Path):
+    def __init__(self, path):
         self.path = path
-        if not path.is_file():
-            raise FileError(f"{path}: no such file")
+        self._file = GuardedFile(path)
         try:
-            self._file = h5py.File(path, "r", locking=False)
-        except OSError as error:
-            raise FileError(f"{path}: not an HDF5 file, or damaged") from error
-        try:
-            self._check()
-        except FileError:
-            self._file.close()
+            self._read_header()
+            self._read_frames()
+        except BaseException:
+            self.close()
             raise
 
     def __enter__(self):
@@ -54,136 +52,143 @@ class Trajectory:
         self.close()
 
     def close(self) -> None:
-        """Close the file."""
+        """Close the file; what was read stays."""
         self._file.close()
 
     def read(self, name: str, frames=slice(None)) -> np.ndarray:
-        """Return a stored field of the chosen frames, ``read("director", slice(-1, None))``."""
-        if name == "tracers":
-            return self._value(TRACERS, frames)
-        return self._value(f"{TRAJECTORY}/{name}", frames)
+        """Return a field in some frames, or one: (T, N, 3), director (T, N, 3, 3), or less T.
 
-    def observable(self, name: str) -> np.ndarray:
-        """Return an observable, (T, R) or (T, 3)."""
-        return self._value(f"observables/{name}")
+        ``name`` is one of ``fields``; ``frames`` a slice or a number, negative from the end.
+        Raises FileError if the field is not stored, IndexError for a frame that does not exist.
+        """
+        if name not in self.fields:
+            raise FileError(
+                f"{self.path}: has no {name}; it has {', '.join(self.fields)} "
+                "(output.fields in the case says what is stored)"
+            )
+        if name == "tracers":
+            return self._values(TRACERS, (None, 3), frames)
+        shape = (self.points, 3, 3) if name == "director" else (self.points, 3)
+        return self._values(f"{TRAJECTORY}/{name}", shape, frames)
+
+    def observable(self, name: str, frames=slice(None)) -> np.ndarray:
+        """Return one of ``observables``: (T, R), for net_force and net_torque (T, 3)."""
+        if name not in self.observables:
+            raise FileError(f"{self.path}: has no {name}; it has {', '.join(self.observables)}")
+        columns = 3 if name in layout.BALANCES else len(self.rods)
+        return self._values(f"{OBSERVABLES}/{name}", (columns,), frames)
 
     @property
     def fields(self) -> list[str]:
-        """Names of the stored fields."""
-        return list(self._group(TRAJECTORY))
+        """Names of the stored fields, with ``tracers`` where there are some."""
+        stored = self._file.names(TRAJECTORY)
+        known = [name for name in layout.FIELDS if name in stored]
+        return known + ["tracers"] * ("position" in self._file.names("particles/tracers"))
 
     @property
     def observables(self) -> list[str]:
-        """Names of the observables."""
-        return list(self._group("observables"))
+        """Names of the stored observables."""
+        stored = self._file.names(OBSERVABLES)
+        return [name for name in (*layout.PER_ROD, *layout.BALANCES) if name in stored]
 
     @property
-    def position(self):
-        """All positions, (T, N, 3)."""
+    def position(self) -> np.ndarray:
+        """Positions in all frames, (T, N, 3)."""
         return self.read("position")
 
     @property
-    def director(self):
-        """All triads, (T, N, 3, 3)."""
+    def director(self) -> np.ndarray:
+        """Triads in all frames, (T, N, 3, 3): [t, point, i, :] is D^(i+1)."""
         return self.read("director")
 
     @property
-    def tracers(self):
-        """All tracer positions, (T, P, 3)."""
-        return self.read("tracers") if TRACERS in self._file else np.zeros((self.frames, 0, 3))
+    def tracers(self) -> np.ndarray:
+        """Positions of the tracers in all frames, (T, P, 3); P is 0 where there are none."""
+        return self.read("tracers") if "tracers" in self.fields else np.empty((self.frames, 0, 3))
 
     def unit(self, name: str) -> str:
-        """Return the unit of a field or observable."""
-        where = f"{TRAJECTORY}/{name}" if name in self.fields else f"observables/{name}"
-        return str(self._dataset(f"{where}/value").attrs.get("units", "1"))
+        """Return the unit of a field or observable, e.g. ``g um^2 s^-2``."""
+        group = OBSERVABLES if name in self.observables else TRAJECTORY
+        where = TRACERS if name == "tracers" else f"{group}/{name}"
+        return self._file.attribute(f"{where}/value", "units", str)
 
-    def _check(self):
-        attrs = self._file.attrs
-        if _text(attrs.get("filetype")) != layout.FILETYPE:
-            raise FileError(f"{self.path}: not an output file of rodsim")
-        found = attrs.get("format")
-        if not isinstance(found, np.integer) or found != layout.FORMAT:
-            raise FileError(f"{self.path}: format {found}; this rodsim reads {layout.FORMAT}")
-        self.format = int(found)
-        self.status = _text(attrs.get("status"))
-        self.version = _text(attrs.get("version"))
-        self.created = _text(attrs.get("created"))
-        self.frames = self._committed()
-        self.time = self._rows(f"{CLOCK}/time")
-        self.step = self._rows(f"{CLOCK}/step")
-        self.rods = self._read_rods()
-        self.case_source = self._read_text("case/source")
-        self.case_resolved = self._read_text("case/resolved")
-        self.overrides = [_text(entry) for entry in self._dataset("case/overrides")[()]]
-        self.runtime = {key: value.item() for key, value in self._group("runtime").attrs.items()}
+    def checkpoint(self) -> dict | None:
+        """Return the newest whole state of the integrator, or None if there is none."""
+        slots = []
+        for slot in (f"checkpoint/{name}" for name in SLOTS):
+            try:
+                serial, crc = self._file.array(f"{slot}/{SEAL}", "i", (2,))
+                names = [name for name in self._file.names(slot) if name != SEAL]
+                arrays = {n: self._file.array(f"{slot}/{n}", "fiub", None) for n in names}
+            except FileError:
+                continue  # never written, or torn: that is what the other slot is for
+            slots.append((int(serial), int(crc), arrays))
+        return newest(slots)
+
+    def _read_header(self):
+        file = self._file
         try:
-            self.units = json.loads(_text(self._group("case").attrs["units"]))
-        except (KeyError, ValueError) as error:
-            raise FileError(f"{self.path}: damaged: case units cannot be read") from error
+            ours = file.attribute("/", "filetype", str) == layout.FILETYPE
+        except FileError:
+            ours = False
+        if not ours:
+            raise FileError(f"{self.path}: not a rodsim output")
+        self.format = file.attribute("/", "format", int)
+        if self.format > layout.FORMAT:
+            raise FileError(
+                f"{self.path}: has format {self.format}, of a newer rodsim; "
+                f"this one reads up to {layout.FORMAT}"
+            )
+        self.status, self.version, self.created = (
+            file.attribute("/", key, str) for key in ("status", "version", "created")
+        )
+        if self.status not in layout.STATUS:
+            raise file.damaged(f"its status is {self.status!r}")
+        self.case_source, self.case_resolved = file.text("case/source"), file.text("case/resolved")
+        self.overrides, self.resumes = file.texts("case/overrides"), file.texts("case/resumes")
+        self.units = {
+            kind: file.attribute("case", f"{kind}_unit", str) for kind in ("length", "mass", "time")
+        }
+        unknown = (-1, "")
+        runtime = file.attributes("runtime").items()
+        self.runtime = {
+            k: v for k, v in runtime if v not in unknown and v == v
+        }  # NaN is not itself
 
-    def _committed(self):
-        dataset = self._dataset("committed")
-        if dataset.shape != () or dataset.dtype.kind != "i" or dataset[()] < 0:
-            raise FileError(f"{self.path}: damaged: the count of frames is not a number")
-        return int(dataset[()])
+    def _read_frames(self):
+        self.frames = int(self._file.array("committed", "i", ()))
+        self.rods = self._read_rods()
+        self.points = sum(rod.count for rod in self.rods)
+        self.time = self._rows(f"{CLOCK}/time", "f", ())
+        self.steps = self._rows(f"{CLOCK}/step", "i", ())
+        if self.frames < 0 or not np.isfinite(self.time).all():
+            raise self._file.damaged("frames without a time")
 
     def _read_rods(self):
-        records = []
-        try:
-            for name, node in self._group("rods").items():
-                a = node.attrs
-                moduli = (*a["bending"], a["twisting"], *a["shear"], a["stretch"])
-                record = RodRecord(
-                    name,
-                    int(a["first"]),
-                    int(a["count"]),
-                    bool(a["closed"]),
-                    float(a["spacing"]),
-                    tuple(map(float, moduli)),
-                )
-                records.append((int(a["index"]), record))
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
-            raise FileError(f"{self.path}: damaged: rods cannot be read ({error})") from error
-        return [record for _, record in sorted(records, key=lambda pair: pair[0])]
+        get = self._file.attribute
+        found = [(name, f"rods/{name}") for name in self._file.names("rods")]
+        found.sort(key=lambda rod: get(rod[1], "index", int))
+        rods, first = [], 0
+        for name, where in found:
+            start, count = get(where, "first", int), get(where, "count", int)
+            closed, spacing = get(where, "closed", bool), get(where, "spacing", float)
+            moduli = tuple(get(where, "moduli", float, (6,)).tolist())
+            if start != first or count < 1:
+                raise self._file.damaged(f"{where} does not follow the rod before it")
+            rods.append(RodRecord(name, start, count, closed, spacing, moduli))
+            first += count
+        return rods
 
-    def _read_text(self, name):
-        return _text(self._dataset(name)[()])
+    def _values(self, where, shape, frames=slice(None)):
+        return self._rows(f"{where}/value", "f", shape, frames)
 
-    def _value(self, where, frames=slice(None)):
-        return self._rows(f"{where}/value", frames)
-
-    def _rows(self, name, frames=slice(None)):
-        dataset = self._dataset(name)
-        if dataset.ndim == 0 or len(dataset) < self.frames:
-            raise FileError(f"{self.path}: damaged: {name} has fewer frames than committed")
-        start, stop, stride = frames.indices(self.frames)
-        return dataset[start:stop:stride]
-
-    def _group(self, name):
-        node = self._node(name)
-        if not isinstance(node, h5py.Group):
-            raise FileError(f"{self.path}: damaged: no group {name}")
-        return node
-
-    def _dataset(self, name):
-        """Return a dataset of this very file: no external link, storage or virtual source."""
-        node = self._node(name)
-        if not isinstance(node, h5py.Dataset) or node.external or node.is_virtual:
-            raise FileError(f"{self.path}: damaged: {name} is not a dataset of this file")
-        return node
-
-    def _node(self, name):
-        node = self._file
-        for part in name.split("/"):
-            if not isinstance(node, h5py.Group) or part not in node:
-                raise FileError(f"{self.path}: has no {name}")
-            if isinstance(node.get(part, getlink=True), h5py.ExternalLink | h5py.SoftLink):
-                raise FileError(f"{self.path}: damaged: {name} is a link to elsewhere")
-            node = node[part]
-        return node
-
-
-def _text(value):
-    if isinstance(value, bytes):
-        return value.decode("utf-8", "replace").rstrip("\0")
-    return str(value)
+    def _rows(self, name, kinds, shape, frames=slice(None)):
+        """Return rows of a dataset, none beyond the committed frames."""
+        if not isinstance(frames, slice):
+            number = range(self.frames)[index(frames)]
+            return self._rows(name, kinds, shape, slice(number, number + 1))[0]
+        chosen = range(self.frames)[frames]
+        forward = chosen if chosen.step > 0 else chosen[::-1]
+        rows = np.s_[forward.start : forward.stop : forward.step]
+        values = self._file.array(name, kinds, (None, *shape), rows, at_least=self.frames)
+        return values if chosen.step > 0 else values[::-1]

@@ -1,84 +1,88 @@
 """The group ``/VTKHDF``: a view that lets ParaView open the output file itself, without a copy.
 
 Format: VTKHDF 2.0, PolyData with steps. Points and point data are virtual datasets over the
-trajectory; the lines, one per rod, are shared by all steps. Frames become visible one by one:
-``NSteps`` is raised after the frame is written, and ``Steps/Values`` grows after that, because
-VTK's reader crashes on more values than steps.
+trajectory; the lines, one per rod, are shared by all steps. ``NSteps`` says how many frames there
+are. VTK's reader copies all of ``Steps/Values`` into room for ``NSteps``: values beyond that crash
+it, values missing are read as time 0. So each frame raises ``NSteps`` first, then adds its time.
 """
+
+from __future__ import annotations
 
 import h5py
 import numpy as np
 
-from rodsim.output.layout import TRAJECTORY
+from rodsim.output.layout import TRAJECTORY, Plan
 
 VERSION = (2, 0)
 CELLS = ("Vertices", "Lines", "Polygons", "Strips")  # VTK insists on all four
 
 
-def build_view(file, rods, frames: int, fields) -> None:
-    """Create ``/VTKHDF`` with no step visible yet."""
-    points = sum(rod.count for rod in rods)
+def build_view(file: h5py.File, plan: Plan) -> None:
+    """Create ``/VTKHDF`` with no frame visible yet."""
     root = file.create_group("VTKHDF")
     root.attrs["Version"] = np.array(VERSION, dtype=np.int64)
-    root.attrs.create("Type", np.bytes_("PolyData"), dtype="S8")
-    root["NumberOfPoints"] = np.array([points], dtype=np.int64)
-    _virtual(file, root, "Points", "position", (frames, points, 3), ...)
+    root.attrs["Type"] = np.bytes_("PolyData")
+    root["NumberOfPoints"] = np.array([plan.points], dtype=np.int64)
     for kind in CELLS:
-        _cells(root.create_group(kind), rods if kind == "Lines" else [])
+        _add_cells(root.create_group(kind), plan.rods if kind == "Lines" else [])
+    root["CellData/rod"] = np.arange(len(plan.rods), dtype=np.int64)
     data = root.create_group("PointData")
-    cells = root.create_group("CellData")
-    cells["rod"] = np.arange(len(rods), dtype=np.int64)
-    for name in fields:
-        if name == "director":
+    for series in plan.fields_stored():
+        if series.name == "position":
+            _add_view(root, "Points", file[f"{series.where}/value"], np.s_[:])
+        elif series.name == "director":
             for i in range(3):
-                pick = np.s_[:, :, i, :]
-                _virtual(file, data, f"D{i + 1}", name, (frames, points, 3, 3), pick)
-        elif name != "position":
-            _virtual(file, data, name, name, (frames, points, 3), ...)
-    _steps(root.create_group("Steps"), frames, points, list(data), list(cells))
+                _add_view(data, f"D{i + 1}", file[f"{series.where}/value"], np.s_[:, :, i, :])
+        elif series.where.startswith(TRAJECTORY):
+            _add_view(data, series.name, file[f"{series.where}/value"], np.s_[:])
+    _add_steps(root.create_group("Steps"), len(plan.times), plan.points, data)
 
 
-def show_frame(file, frame: int, time: float) -> None:
-    """Make frames up to ``frame`` visible; they must be on their way to the disk already."""
-    steps = file["VTKHDF/Steps"]
-    steps.attrs.modify("NSteps", np.int64(frame + 1))
-    file.flush()
-    steps["Values"].resize((frame + 1,))
-    steps["Values"][frame] = time
+def show_frame(view: h5py.Group, index: int, time: float) -> None:
+    """Make frame ``index``, which is on the disk, the last one visible, or correct its time."""
+    steps, values = view["Steps"], view["Steps/Values"]
+    if index >= len(values):
+        values.resize((index + 1,))
+    values[index] = time
+    steps.file.flush()
 
 
-def _virtual(file, group, name, field, shape, pick):
-    layout = h5py.VirtualLayout((shape[0] * shape[1], 3), "<f8")
-    source = h5py.VirtualSource(".", f"/{TRAJECTORY}/{field}/value", shape)
-    layout[:, :] = source[pick]
-    group.create_virtual_dataset(name, layout, fillvalue=np.nan)
+def count_frames(view: h5py.Group, frames: int) -> None:
+    """Set the number of visible frames; to be on the disk before ``show_frame`` of the last one."""
+    view["Steps"].attrs.modify("NSteps", np.int64(frames))
 
 
-def _cells(group, rods):
-    """One polyline per rod; a closed one ends where it began."""
+def _add_view(group, name, value, pick):
+    frames, points = value.shape[:2]
+    view = h5py.VirtualLayout((frames * points, 3), np.float64)
+    source = h5py.VirtualSource(".", value.name, value.shape)  # "." is this very file
+    view[:] = source[pick]
+    group.create_virtual_dataset(name, view, fillvalue=np.nan)
+
+
+def _add_cells(group, rods):
+    """Add one polyline per rod; a closed one ends where it began."""
     lines = [
-        np.r_[rod.first : rod.first + rod.count, [rod.first] * bool(rod.closed)] for rod in rods
+        [*range(rod.first, rod.first + rod.count), *([rod.first] if rod.closed else [])]
+        for rod in rods
     ]
-    connectivity = np.concatenate([np.zeros(0), *lines]).astype(np.int64)
+    connectivity = np.array([node for line in lines for node in line], dtype=np.int64)
     group["NumberOfCells"] = np.array([len(lines)], dtype=np.int64)
     group["NumberOfConnectivityIds"] = np.array([connectivity.size], dtype=np.int64)
     group["Offsets"] = np.cumsum([0, *map(len, lines)], dtype=np.int64)
     group["Connectivity"] = connectivity
 
 
-def _steps(group, frames, points, point_data, cell_data):
+def _add_steps(group, frames, points, point_data):
     group.attrs["NSteps"] = np.int64(0)
-    # One chunk: growing it never splits an index that a kill could tear.
-    group.create_dataset("Values", (0,), "<f8", maxshape=(frames,), chunks=(frames,))
-    zeros = np.zeros(frames, dtype=np.int64)
-    group["PartOffsets"] = zeros
-    group["NumberOfParts"] = zeros + 1
+    # One chunk, there from the start: growing changes one number, and no index that could tear.
+    group.create_dataset("Values", (1,), np.float64, maxshape=(frames,), chunks=(frames,))[:] = 0.0
+    group["NumberOfParts"] = np.ones(frames, dtype=np.int64)
+    group["PartOffsets"] = np.zeros(frames, dtype=np.int64)
     group["PointOffsets"] = np.arange(frames, dtype=np.int64) * points
     group["CellOffsets"] = np.zeros((frames, len(CELLS)), dtype=np.int64)
-    group["ConnectivityIdOffsets"] = np.zeros((frames, len(CELLS)), dtype=np.int64)
-    offsets = group.create_group("PointDataOffsets")
+    group["ConnectivityIdOffsets"] = group["CellOffsets"]
+    group["CellDataOffsets/rod"] = group["PartOffsets"]
     for name in point_data:
-        offsets[name] = np.arange(frames, dtype=np.int64) * points
-    offsets = group.create_group("CellDataOffsets")
-    for name in cell_data:
-        offsets[name] = zeros
+        group[f"PointDataOffsets/{name}"] = group["PointOffsets"]
+    group.require_group("PointDataOffsets")

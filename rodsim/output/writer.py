@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -11,25 +10,32 @@ import numpy as np
 
 from rodsim.errors import FileError
 from rodsim.output import layout
-from rodsim.output.build import build_file, reserve
-from rodsim.output.layout import CLOCK, TRACERS, TRAJECTORY
-from rodsim.output.paths import OutputLock, free_name
-from rodsim.output.vtkhdf import show_frame
+from rodsim.output.build import build_file
+from rodsim.output.checkpoint import CheckpointWriter
+from rodsim.output.layout import CLOCK, Plan
+from rodsim.output.paths import OutputLock, take_place, temporary_name
+from rodsim.output.vtkhdf import count_frames, show_frame
+
+_abandoned = []  # files that could not be written: closing them can end the process in a crash
 
 
 class TrajectoryWriter:
-    """The output file of one run, open for writing. Use as a context manager.
+    """The output file of one run, open for writing. A context manager.
 
-    ``committed`` is the number of frames that count: it is raised after the frame's data are
-    flushed, so a reader, or whoever comes after a kill, never sees half a frame.
+    ``committed`` is the number of frames that count. It is raised when a frame's data have gone
+    to the system, so a reader, or whoever comes after a kill, never sees half a frame.
+
+    Attributes
+    ----------
+    path : the file. times : (T,) of all planned frames. renamed_to : where an older output with
+    the same name has gone, or None.
     """
 
-    def __init__(self, path: Path, times: np.ndarray, lock: OutputLock, renamed_to: Path | None):
-        self.path, self.times, self.renamed_to = path, times, renamed_to
+    def __init__(self, path: Path, file: h5py.File, plan: Plan, lock: OutputLock):
+        self.path, self.times, self.renamed_to = path, plan.times, None
         self.committed = 0
-        self._lock = lock
-        with self._writing():
-            self._file = h5py.File(path, "r+", locking=False)
+        self._file, self._plan, self._lock = file, plan, lock
+        self._checkpoint = CheckpointWriter(file["checkpoint"])
 
     @classmethod
     def create(
@@ -39,94 +45,139 @@ class TrajectoryWriter:
 
         Parameters
         ----------
-        case : CaseText; rods : list of RodRecord; times : (T,) of all frames to come;
-        tracers : number P; fields : names out of ``layout.FIELDS``; units : names of the units of length, mass, time;
-        density : True where kinetic energy is recorded.
-        overwrite : replace an existing output, which is otherwise renamed (``renamed_to``).
+        case : CaseText. rods : list of RodRecord. times : (T,) of all frames to come.
+        tracers : number P. fields : names out of ``layout.FIELDS``; position is always stored.
+        units : names of the units of ``length``, ``mass`` and ``time``.
+        density : whether kinetic energy is stored.
+        overwrite : replace an output that exists; else it is renamed (see ``renamed_to``).
 
         Raises
         ------
-        FileError : no room, no permission, or another process is writing this file.
+        FileError : no room, no permission, or another process is writing this file. What was
+            there before is then still there.
         """
         path = Path(path)
-        if path.is_dir() or not path.parent.is_dir():
-            raise FileError(f"{path}: is not a file in an existing folder")
+        if not path.parent.is_dir():
+            raise FileError(f"{path}: there is no folder {path.parent}")
+        if path.exists() and not path.is_file():
+            raise FileError(f"{path}: exists and is not a file")
+        times = np.array(times, dtype=float)
+        plan = Plan(case, list(rods), times, tracers, tuple(fields), dict(units), density)
         lock = OutputLock(path)
         lock.acquire()
-        building = path.with_name(f".{path.name}.{os.getpid()}.tmp")
         try:
-            build_file(building, case, rods, times, tracers, fields, units, density)
-            reserve(building)
-            renamed_to = None
-            if path.exists() and not overwrite:
-                renamed_to = free_name(path)
-                path.rename(renamed_to)
-            building.replace(path)
-            return cls(path, times, lock, renamed_to)
+            building = temporary_name(path)
+            writer = cls(path, build_file(building, plan), plan, lock)
+            try:
+                writer.renamed_to = take_place(building, path, overwrite)
+            except BaseException:
+                writer._file.close()
+                building.unlink(missing_ok=True)
+                raise
         except BaseException as error:
-            building.unlink(missing_ok=True)
             lock.release()
-            if isinstance(error, OSError):
-                raise FileError(f"{path}: cannot be written: {error.strerror or error}") from error
+            if isinstance(error, OSError | FileError):
+                reason = getattr(error, "strerror", None) or error
+                raise FileError(f"{path}: cannot be written: {reason}") from error
             raise
+        return writer
 
     def __enter__(self):
         return self
 
     def __exit__(self, *error):
-        if self._file:
-            self.finish("stopped", {})
+        self.finish("stopped", {})
 
     def write_frame(self, index: int, step: int, fields: dict, observables: dict) -> None:
-        """Write frame ``index`` and commit it.
+        """Write frame ``index`` and commit it: the next one, or an earlier one again.
 
-        fields : structure of arrays, (3, N), director (3, 3, N), ``tracers`` (3, P); those that
-            the file does not store are left out. observables : (R,) or (3,) each.
+        fields : structure of arrays, (3, N), director (3, 3, N) as [i, component, point],
+            tracers (3, P). observables : (R,) or (3,) each. What the file does not store is left
+            out.
 
         Raises
         ------
-        ValueError : a value to be stored is not finite. FileError : the disk is full or gone.
+        ValueError : a value is missing, not finite, or has another shape; nothing is written.
+        FileError : the disk is full or gone.
         """
-        file = self._file
-        with self._writing():
-            for name in file[TRAJECTORY]:
-                _put(file[f"{TRAJECTORY}/{name}/value"], index, fields[name], points_first=True)
-            if TRACERS in file:
-                _put(file[f"{TRACERS}/value"], index, fields["tracers"], points_first=True)
-            for name in file["observables"]:
-                _put(file[f"observables/{name}/value"], index, observables[name])
+        if not 0 <= index <= self.committed or index >= len(self.times):
+            raise ValueError(f"frame {index}: have {self.committed} of {len(self.times)}")
+        rows = {s.where: _row(s, fields, -1) for s in self._plan.fields_stored()}
+        rows |= {s.where: _row(s, observables, 0) for s in self._plan.observables_stored()}
+        with self._writing() as file:
+            for where, row in rows.items():
+                file[f"{where}/value"][index] = row
             file[f"{CLOCK}/time"][index] = self.times[index]
             file[f"{CLOCK}/step"][index] = step
             file.flush()
-            file["committed"][()] = index + 1
-            show_frame(file, index, self.times[index])
+            self._commit(file, index)
+
+    def checkpoint(self, state: dict) -> None:
+        """Store the state of the integrator: arrays and numbers by name, the same ones each time.
+
+        Raises ValueError where names, shapes or types change, FileError where the disk is full.
+        """
+        with self._writing():
+            self._checkpoint.write(state)
+
+    def update_runtime(self, runtime: dict) -> None:
+        """Set attributes of ``/runtime``: numbers and short texts by name."""
+        with self._writing() as file:
+            for name, value in runtime.items():
+                value = _short(value) if isinstance(value, str) else value
+                file["runtime"].attrs.modify(name, value)
             file.flush()
-        self.committed = index + 1
 
     def finish(self, status: str, runtime: dict) -> None:
-        """Set the status and ``/runtime``, close the file, give back the lock."""
+        """Set status and ``/runtime``, close the file, give back the lock. Once; then nothing."""
+        if status not in layout.STATUS[1:]:
+            raise ValueError(f"no such end of a run: {status}")
         try:
-            with self._writing():
-                fixed = np.bytes_(status.ljust(layout.STATUS_BYTES, "\0"))
-                self._file.attrs.modify("status", fixed)
-                self._file["runtime"].attrs.update(runtime)
-                self._file.close()
+            if self._file is not None:
+                self.update_runtime(runtime)
+                with self._writing() as file:
+                    file.attrs.modify("status", _short(status))
+                    file.flush()
+                    file.close()
         finally:
             self._file = None
             self._lock.release()
 
+    def _commit(self, file, index):
+        """Let the frame count; its data are written. Each flush keeps the order on the disk."""
+        committed = max(self.committed, index + 1)
+        file["committed"][()] = committed
+        count_frames(file["VTKHDF"], committed)
+        file.flush()
+        self.committed = committed
+        show_frame(file["VTKHDF"], index, self.times[index])
+
     @contextmanager
     def _writing(self):
+        if self._file is None:
+            raise FileError(f"{self.path}: is closed, after an error in writing or at its end")
         try:
-            yield
+            yield self._file
         except (OSError, RuntimeError) as error:
+            _abandoned.append(self._file)
+            self._file = None
             raise FileError(
-                f"{self.path}: writing failed: {error}. Its first {self.committed} frames are safe"
+                f"{self.path}: writing failed: {error}; its first {self.committed} frames are safe"
             ) from error
 
 
-def _put(dataset, index, values, points_first=False):
-    values = np.moveaxis(values, -1, 0) if points_first else values
-    if not np.isfinite(values).all():
-        raise ValueError(f"{dataset.name}: frame {index} is not finite")
-    dataset[index] = values
+def _row(series, given, point_axis):
+    """Return what is stored of one quantity in a frame: points first, as readers want it."""
+    if series.name not in given:
+        raise ValueError(f"{series.name}: missing in a frame")
+    row = np.moveaxis(np.asarray(given[series.name]), point_axis, 0)
+    if row.shape != series.shape:
+        raise ValueError(f"{series.name}: {row.shape} in a frame, not {series.shape}")
+    if not np.isfinite(row).all():
+        raise ValueError(f"{series.name}: not finite")
+    return row
+
+
+def _short(text):
+    """Return a text cut to the fixed length of those that are changed in place."""
+    return np.bytes_(text.encode()[: layout.TEXT_BYTES])

@@ -62,8 +62,8 @@ def test_loads_equal_their_twin(closed, points):
     loads = loads_of(X, D, omega, table((points, closed, ds)))
     g, m = twins.rod_loads(X.T, D.transpose(2, 0, 1), omega.T, ds, MODULI[:, 0], closed)
     # The twin's matrix logarithm is good to about 1e-13.
-    assert loads[:3].T == pytest.approx(g, abs=1e-11 * abs(g).max())
-    assert loads[3:].T == pytest.approx(m, abs=1e-11 * abs(m).max())
+    assert pytest.approx(g, abs=1e-11 * abs(g).max()) == loads[:3].T
+    assert pytest.approx(m, abs=1e-11 * abs(m).max()) == loads[3:].T
 
 
 @pytest.mark.parametrize("closed", [False, True])

@@ -1,0 +1,46 @@
+"""How helical a rod is: radius, pitch and turns of its centreline, and the turns of its triads."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Helix:
+    """A helix fitted to points: radius, pitch (length per turn, > 0 right-handed), turns (> 0)."""
+
+    radius: float
+    pitch: float
+    turns: float
+
+
+def fit_helix(position: np.ndarray) -> Helix:
+    """Fit a helix to the centreline (M, 3) of an open rod, M >= 4.
+
+    The second differences of a helix are all perpendicular to its axis, which is therefore their
+    weakest singular direction. Across the axis a circle is fitted by least squares; turns are the
+    angle swept round its centre over 2 pi, pitch the slope of height against angle times 2 pi.
+    """
+    bends = np.diff(position, n=2, axis=0)
+    across = np.linalg.svd(bends, full_matrices=True)[2]
+    flat, axis = position @ across[:2].T, np.cross(across[0], across[1])
+    system = np.column_stack([2.0 * flat, np.ones(len(flat))])
+    *centre, rest = np.linalg.lstsq(system, np.sum(flat**2, axis=1), rcond=None)[0]
+    angle = np.unwrap(np.arctan2(*(flat - centre).T[::-1]))
+    slope = np.polyfit(angle, position @ axis, 1)[0]
+    radius = np.sqrt(rest + np.dot(centre, centre))
+    return Helix(float(radius), float(2.0 * np.pi * slope), float(np.ptp(angle) / (2.0 * np.pi)))
+
+
+def triad_turns(director: np.ndarray, closed: bool = False) -> float:
+    """Return the turns of the triads (M, 3, 3) about D^3: sum of 2 sin(theta/2) e^3 over 2 pi.
+
+    For a rod at rest this is Omega_3 L / 2 pi, the number that eq. (45) calls turns; it is a
+    twist number and not the number of turns of the helix. ``director[k, i]`` is D^(i+1).
+    """
+    after = np.roll(director, -1, axis=0)
+    pairs = slice(None) if closed else slice(len(director) - 1)
+    here, after = director[pairs], after[pairs]
+    cosine = 0.5 * np.sqrt(1.0 + np.einsum("kic,kic->k", here, after))
+    axial = 0.5 * np.cross(here, after).sum(axis=1)
+    return float(np.sum(np.einsum("kc,kc->k", axial, here[:, 2]) / cosine) / (2.0 * np.pi))

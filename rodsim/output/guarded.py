@@ -1,0 +1,141 @@
+"""Access to an HDF5 file that may come from anywhere: whatever is wrong becomes a FileError."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from rodsim.errors import FileError
+
+# Deflate packs a thousandfold at best: a dataset larger than that has no contents in this file,
+# and reading it would only fill the memory.
+PACKING = 2000
+ATTRIBUTE_KINDS = {str: "", bool: "b", int: "iu", float: "f"}
+
+
+class GuardedFile:
+    """Groups, datasets and attributes of one file, checked for what they are before they are read.
+
+    Nothing outside the file is opened: no soft or external link, no virtual dataset, no external
+    storage.
+    """
+
+    def __init__(self, path):
+        self.path = Path(path)
+        if not self.path.exists():
+            raise FileError(f"{path}: no such file")
+        try:
+            if not (self.path.is_file() and h5py.is_hdf5(self.path)):
+                raise FileError(f"{path}: not an HDF5 file")
+            self._file = h5py.File(self.path, "r", locking=False)
+        except OSError as error:
+            raise FileError(f"{path}: cannot be opened, damaged or cut short ({error})") from error
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def damaged(self, what: str) -> FileError:
+        """Return the error that says what is wrong with the file."""
+        return FileError(f"{self.path}: damaged: {what}")
+
+    def names(self, group: str) -> list[str]:
+        """Return the names in a group, none if there is no such group."""
+        try:
+            return list(self._node(group, h5py.Group))
+        except FileError:
+            return []
+
+    def attribute(self, name: str, key: str, kind: type, shape=()):
+        """Return an attribute: ``kind`` is str, bool, int or float; an array if it has a shape."""
+        value = self._attribute(self._node(name), key)
+        if kind is str and isinstance(value, str):
+            return value
+        array = np.asarray(value)
+        if array.shape != shape or array.dtype.kind not in ATTRIBUTE_KINDS[kind]:
+            raise self.damaged(f"{name} has no proper {key}")
+        return array if shape else kind(array)
+
+    def attributes(self, name: str) -> dict:
+        """Return those attributes of a group that are single numbers or texts."""
+        node = self._node(name)
+        found = {key: self._attribute(node, key) for key in node.attrs}
+        return {
+            key: value if isinstance(value, str) else value.item()
+            for key, value in found.items()
+            if isinstance(value, np.number | str)
+        }
+
+    def _attribute(self, node, key):
+        try:
+            value = node.attrs[key]
+            if isinstance(value, str):
+                value = value.encode()  # refuses the stand-ins for bytes that are not text
+            return value.decode() if isinstance(value, bytes) else value
+        except (KeyError, OSError, RuntimeError, TypeError, ValueError) as error:
+            raise self.damaged(f"{node.name} has no proper {key}") from error
+
+    def array(self, name: str, kinds: str, shape, rows=(), at_least=0) -> np.ndarray:
+        """Return a dataset, or some ``rows`` of it; it must have ``at_least`` so many.
+
+        ``kinds`` are the kinds of dtype allowed, ``shape`` the expected one: None is any length,
+        and the whole of it None is any shape.
+        """
+        data = self._dataset(name)
+        if data.dtype.kind not in kinds or not _fits(data.shape, shape):
+            raise self.damaged(f"{name} has shape {data.shape} of {data.dtype}")
+        if at_least and len(data) < at_least:
+            raise self.damaged(f"{name} has {len(data)} frames of {at_least}")
+        return self._contents(name, data, rows)
+
+    def text(self, name: str) -> str:
+        """Return a text dataset."""
+        return self._decoded(name, ())
+
+    def texts(self, name: str) -> list[str]:
+        """Return a dataset that is a list of texts."""
+        return list(self._decoded(name, (None,)))
+
+    def _decoded(self, name, shape):
+        data = self._dataset(name)
+        if h5py.check_string_dtype(data.dtype) is None or not _fits(data.shape, shape):
+            raise self.damaged(f"{name} is not text")
+        return self._contents(name, data.asstr(errors="replace"), ())
+
+    def _contents(self, name, data, rows):
+        try:
+            return data[rows]
+        except (OSError, RuntimeError, TypeError, ValueError, MemoryError) as error:
+            raise self.damaged(f"{name} cannot be read ({error})") from error
+
+    def _dataset(self, name):
+        data = self._node(name, h5py.Dataset)
+        if data.external or data.is_virtual:
+            raise self.damaged(f"{name} lies outside this file")
+        if data.shape is None or data.nbytes > PACKING * data.id.get_storage_size():
+            raise self.damaged(f"{name} is empty")
+        return data
+
+    def _node(self, name, kind=h5py.HLObject):
+        """Walk to an object link by link."""
+        node = self._file
+        try:
+            for part in filter(None, name.split("/")):
+                if not isinstance(node.get(part, getlink=True), h5py.HardLink):
+                    raise self.damaged(f"{name} is a link to elsewhere")
+                node = node[part]
+        except (KeyError, AttributeError, TypeError, OSError, RuntimeError, ValueError) as error:
+            raise self.damaged(f"{name} is missing") from error
+        if not isinstance(node, kind):
+            raise self.damaged(f"{name} is not a {kind.__name__.lower()}")
+        return node
+
+
+def _fits(found, expected):
+    if expected is None:
+        return True
+    return len(found) == len(expected) and all(
+        wanted in (None, length) for length, wanted in zip(found, expected, strict=True)
+    )

@@ -1,0 +1,149 @@
+"""Expressions: the right values, and nothing but arithmetic."""
+
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+from rodsim.case import Expression, ExpressionError
+
+S = np.array([0.0, 0.3, 1.7])
+T = 0.4
+P = {"k": 1.25, "b": 0.6, "sigma": 40.0}
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("-k**2*b*sin(k*s + sigma*t)", lambda s: -(1.25**2) * 0.6 * math.sin(1.25 * s + 16.0)),
+        ("2**-1**2", lambda s: 0.5),
+        ("-s**2", lambda s: -(s**2)),
+        ("7 % 3 - s/2", lambda s: 1.0 - s / 2),
+        ("2*pi*t", lambda s: 0.8 * math.pi),
+        ("min(s, 1, t)", lambda s: min(s, 0.4)),
+        ("max(s, 1)", lambda s: max(s, 1.0)),
+        ("where(s < 1, s, -s)", lambda s: s if s < 1 else -s),
+        ("where(0 < s <= 0.3, 1, 2)", lambda s: 1.0 if 0 < s <= 0.3 else 2.0),
+        ("-(s >= 1)", lambda s: -1.0 if s >= 1 else 0.0),
+        ("(s > 0) + (s > 1)", lambda s: float(s > 0) + float(s > 1)),
+        ("exp(s) + log(s + 1) + sqrt(s)", lambda s: math.exp(s) + math.log(s + 1) + math.sqrt(s)),
+        ("tanh(s)*tan(s) + cos(s) + abs(-s)",
+         lambda s: math.tanh(s) * math.tan(s) + math.cos(s) + s),
+        ("1\n+ s", lambda s: 1 + s),
+    ],
+)  # fmt: skip
+def test_value(text, value):
+    found = Expression(text, P)(S, T)
+    assert found.dtype == np.float64
+    assert found == pytest.approx([value(s) for s in S], rel=1e-14, abs=1e-15)
+
+
+def test_result_has_the_shape_of_s():
+    assert Expression("3")(np.zeros((2, 5)), 0.0).shape == (2, 5)
+
+
+def test_result_is_a_copy():
+    s = S.copy()
+    Expression("s")(s, 0.0)[:] = 9.0
+    assert s.tolist() == S.tolist()
+
+
+@pytest.mark.parametrize(
+    ("text", "uses_s", "uses_t"),
+    [("k", False, False), ("s", True, False), ("t", False, True), ("where(t<1, s, 2)", True, True)],
+)
+def test_what_it_depends_on(text, uses_s, uses_t):
+    expression = Expression(text, P)
+    assert (expression.uses_s, expression.uses_t) == (uses_s, uses_t)
+
+
+@pytest.mark.parametrize("text", ["9**9**9**9", "1/0", "1e999", "exp(1000)"])
+def test_overflow_is_infinite_without_a_warning(text):
+    assert np.isinf(Expression(text)(S, 0.0)).all()
+
+
+def test_invalid_is_nan_without_a_warning():
+    assert np.isnan(Expression("sqrt(-1 - s) + log(-1)")(S, 0.0)).all()
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("k*sgima", "unknown name 'sgima': did you mean 'sigma'?"),
+        ("x", "unknown name 'x': it can use s, t, pi, k, b or sigma"),
+        ("sinn(s)", "unknown function 'sinn': did you mean 'sin'?"),
+        ("k(s)", "unknown function 'k'"),
+        ("sin", "'sin' is a function"),
+        ("2(s + 1)", "did you leave out a '*'"),
+        ("2 s", "not an expression"),
+        ("", "empty"),
+        ("1 +", "not an expression"),
+        ("s^2", "use ** for powers"),
+        ("s == 1", "the comparisons are"),
+        ("1 if s else 2", "where(condition, a, b)"),
+        ("s and t", "where(condition, a, b)"),
+        ("not s", "turn the comparison round"),
+        ("s // 2", "// is not allowed"),
+        ("s in t", "not allowed"),
+        ("s << 2", "not allowed"),
+        ("sin(s, t)", "sin takes 1 argument, not 2"),
+        ("min(s)", "two or more"),
+        ("where(s, 1)", "where takes 3 arguments, not 2"),
+        ("max(*s)", "plain arguments"),
+        ("sin(x=1)", "not allowed"),
+        ("1j", "not a number"),
+        ("True", "not a number"),
+        ("None", "not a number"),
+        ("1, 2", "a comma"),
+        ("s.real", "attribute access"),
+        ("k.__class__.__mro__", "attribute access"),
+        ("__import__(os)", "unknown function"),
+        ("open(s)", "unknown function"),
+        ("lambda: 1", "not allowed"),
+        ("(s := 1)", "not allowed"),
+        ("[s for s in t]", "not allowed"),
+        ("{}", "not allowed"),
+        ("'a'*10", "text in quotes"),
+        ("s[0]", "not allowed"),
+        ("f'{s}'", "text in quotes"),
+        ("(yield)", "not allowed"),
+        ("await s", "not allowed"),
+        ("s; t", "not allowed"),
+        ("ｓ", "not allowed"),
+        ("9" * 900, "too large"),
+        ("-" * 900 + "1", "nested"),
+        ("(" * 400 + "1" + ")" * 400, "not an expression"),
+        ("(" * 1_000_000, "at most 1000"),
+        ("+".join(["s"] * 400), "nested deeper than 100"),
+    ],
+)
+def test_refused(text, words):
+    with pytest.raises(ExpressionError, match=".") as caught:
+        Expression(text, P)
+    assert words in str(caught.value)
+
+
+def test_a_long_sum_is_accepted():
+    assert Expression("+".join(["s"] * 90))(S, 0.0) == pytest.approx(90 * S)
+
+
+def test_equal_by_text_and_parameters():
+    first = Expression("k * s", {"k": 2.5})
+    assert first == Expression("k  *  s", {"k": 2.5})
+    assert hash(first) == hash(Expression("k * s", {"k": 2.5}))
+    assert first != Expression("k * s", {"k": 2.6})
+    assert first != Expression("k*s", {"k": 2.5})
+
+
+def test_pickles():
+    copy = pickle.loads(pickle.dumps(Expression("k*s + t", P)))
+    assert copy == Expression("k*s + t", P)
+    assert copy(S, T) == pytest.approx(1.25 * S + T)
+
+
+def test_parameters_are_bound_at_construction():
+    values = {"k": 2.5}
+    expression = Expression("k*s", values)
+    values["k"] = 9.0
+    assert expression(S, 0.0) == pytest.approx(2.5 * S)
