@@ -66,7 +66,7 @@ set_option = click.option(
 case_argument = click.argument("case_path", metavar="CASE.yaml", type=click.Path(path_type=Path))
 output_argument = click.argument("output", metavar="OUT.h5", type=click.Path(path_type=Path))
 threads_option = click.option(
-    "--threads", type=click.IntRange(1, 1024), help="Number of threads; default: all cores."
+    "--threads", type=click.IntRange(1, 1024), help="Number of threads; by default as many as the scene is worth."
 )
 
 
@@ -91,18 +91,24 @@ def run(case_path, output, overrides, threads, overwrite, dry_run, quiet):
 
     case = _load(case_path, overrides)
     _say_warnings(case)
+    _prepare_numba()
     if dry_run:
-        _prepare_numba(threads)
         click.echo(reports.describe_case(case))
         return
-    _prepare_numba(threads)
     from rodsim.progress import make_progress
     from rodsim.simulation import Summary, simulate
 
     summary = Summary()
     try:
         with make_progress(case.title or case_path.name, quiet) as progress:
-            simulate(case, output, overwrite=overwrite, progress=progress, summary=summary)
+            simulate(
+                case,
+                output,
+                overwrite=overwrite,
+                threads=threads,
+                progress=progress,
+                summary=summary,
+            )
     finally:
         if not quiet and summary.runtime:
             click.echo(reports.run_summary(summary, output), err=True)
@@ -165,7 +171,7 @@ def info(path, overrides):
         return
     case = _load(path, overrides)
     _say_warnings(case)
-    _prepare_numba(None)
+    _prepare_numba()
     click.echo(reports.describe_case(case))
 
 
@@ -220,7 +226,7 @@ def _is_hdf5(path):
         return path.suffix in (".h5", ".hdf5")
 
 
-def _prepare_numba(threads):
+def _prepare_numba():
     from rodsim.settings import prepare
 
-    prepare(threads)
+    prepare()

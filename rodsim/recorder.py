@@ -91,4 +91,15 @@ class Recorder:
             "steps_rejected": integrator.rejected,
             "max_stages": integrator.max_stages,
             "spectral_radius": integrator.spectral_radius,
+            **_threads(),
         }
+
+
+def _threads():
+    import numba
+
+    try:
+        layer = numba.threading_layer()
+    except ValueError:  # nothing has run in parallel yet, or the JIT is off
+        layer = "none"
+    return {"threads": numba.get_num_threads(), "threading_layer": layer}

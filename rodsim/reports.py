@@ -76,7 +76,10 @@ def describe_output(path) -> str:
             lines.append(f"rod {rod.name}: {rod.count} points, {kind}, spacing {rod.spacing:g}")
         lines.append(f"fields: {', '.join(run.fields)}")
         lines.append(f"observables: {', '.join(run.observables)}")
-        lines += [f"{key}: {value:.6g}" for key, value in sorted(run.runtime.items())]
+        lines += [
+            f"{key}: {value if isinstance(value, str) else format(value, '.6g')}"
+            for key, value in run.runtime.items()
+        ]
         if run.overrides:
             lines.append("--set " + " --set ".join(run.overrides))
     return "\n".join(lines)

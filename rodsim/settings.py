@@ -1,5 +1,6 @@
 """Numba's settings for the command. Importing the library never comes here."""
 
+import ctypes
 import hashlib
 import os
 import platform
@@ -9,22 +10,36 @@ from pathlib import Path
 import rodsim
 
 
-def prepare(threads: int | None) -> None:
-    """Choose where compiled code is kept and how many threads run; call before Numba is imported.
+def prepare() -> None:
+    """Choose the cache of compiled code and the threading layer; call before Numba is imported.
 
     The cache lies in the user's own folder, so a read-only install works, under a name made of
     everything compiled code depends on: another version, source, Python or processor finds
     nothing stale there. Variables that the user has set are left alone.
     """
     os.environ.setdefault("NUMBA_CACHE_DIR", str(cache_folder()))
-    if threads is not None:
-        os.environ["NUMBA_NUM_THREADS"] = str(threads)
+    if "NUMBA_THREADING_LAYER" not in os.environ:
+        os.environ["NUMBA_THREADING_LAYER"] = "tbb" if _load_tbb() else "default"
+    # GNU OpenMP's idle threads spin: with a busy neighbour each sum then takes milliseconds.
+    os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 
 def cache_folder() -> Path:
     """Return the folder for compiled code of exactly this installation on this processor."""
     home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     return Path(home) / "rodsim" / _fingerprint()
+
+
+def _load_tbb():
+    """Load the library of ``pip install tbb``: Numba itself does not look where pip puts it."""
+    folder = Path(sys.prefix) / ("Library/bin" if os.name == "nt" else "lib")
+    for name in ("libtbb.so.12", "libtbb.12.dylib", "tbb12.dll"):
+        try:
+            ctypes.CDLL(str(folder / name), mode=ctypes.RTLD_GLOBAL)
+        except OSError:
+            continue
+        return True
+    return False
 
 
 def _fingerprint():

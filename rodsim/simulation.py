@@ -9,6 +9,7 @@ from rodsim.errors import DivergedError, StepFailure
 from rodsim.progress import Silent
 from rodsim.recorder import Recorder, create_writer
 from rodsim.rods import build_scene
+from rodsim.threads import threads_for
 
 
 @dataclass
@@ -21,7 +22,9 @@ class Summary:
     runtime: dict = field(default_factory=dict)
 
 
-def simulate(case, output, *, overwrite=False, progress=None, summary=None) -> Summary:
+def simulate(
+    case, output, *, overwrite=False, threads=None, progress=None, summary=None
+) -> Summary:
     """Run a case and stream it to an HDF5 file.
 
     Parameters
@@ -29,6 +32,7 @@ def simulate(case, output, *, overwrite=False, progress=None, summary=None) -> S
     case : what :func:`rodsim.load_case` returns.
     output : path of the file. One that exists is renamed to the next free ``name.1.h5`` and so
         on (``Summary.moved``), unless ``overwrite``.
+    threads : number of threads, or None for as many as the scene is worth.
     progress : object with ``update(fraction, note)``, or None for none.
     summary : a :class:`Summary` to fill in, for callers that want it after an error as well.
 
@@ -41,7 +45,10 @@ def simulate(case, output, *, overwrite=False, progress=None, summary=None) -> S
     progress = progress or Silent()
     summary = summary or Summary()
     scene = build_scene(case)
-    with create_writer(case, scene, output, overwrite) as writer:
+    with (
+        create_writer(case, scene, output, overwrite) as writer,
+        threads_for(scene.rods.points, threads),
+    ):
         summary.moved = str(writer.renamed_to) if writer.renamed_to else None
         system, integrator, watch, compile_seconds = _compile(case, scene)
         recorder = Recorder(writer, system, started, compile_seconds)

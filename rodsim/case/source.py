@@ -67,7 +67,8 @@ class Source:
 
     def problem(self, key_path: str | Path, reason: str) -> Problem:
         """Return a Problem at a key: its place, its value, and its unit if it is a number."""
-        path = tuple(key_path.split(".")) if isinstance(key_path, str) else tuple(key_path)
+        parts = key_path.split(".") if isinstance(key_path, str) else key_path
+        path = tuple(int(p) if isinstance(p, str) and p.isdecimal() else p for p in parts)
         value, unit = shown(self.value(path)), self.unit(path)
         return Problem(self.where(path), dotted(path), value, reason, unit)
 

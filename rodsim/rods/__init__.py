@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from rodsim.case import check_strain_twist
 from rodsim.errors import CaseError
 from rodsim.rods.shapes import FORMULAS, place
 from rodsim.rods.state import Rods, Scene, State, StrainTwist
@@ -21,7 +22,7 @@ def build_scene(case) -> Scene:
     Raises CaseError for what only the geometry can tell (spacings that differ, a planar scene
     that is not, triads a half-turn apart) and FileError for a shape file.
     """
-    built = [_build_rod(rod.shape, _folder(case)) for rod in case.rods.values()]
+    built = [_build_rod(case, name, rod) for name, rod in case.rods.items()]
     rods = _tables(case, built)
     position = np.ascontiguousarray(np.concatenate([rod[0] for rod in built], axis=1))
     director = np.ascontiguousarray(np.concatenate([rod[1] for rod in built], axis=2))
@@ -50,14 +51,27 @@ def _folder(case):
     return Path(case.source.path).parent if case.source and case.source.path else Path()
 
 
-def _build_rod(shape, folder):
+def _build_rod(case, name, rod):
     """Return position, director, spacing, closed of one rod, placed."""
+    shape = rod.shape
     if shape.kind == "file":
-        position, director, spacing, closed = read_shape(shape, folder)
+        position, director, spacing, closed = read_shape(shape, _folder(case))
+        _check_stored(case, name, rod, spacing, position.shape[1] - (not closed))
     else:
         position, director = FORMULAS[shape.kind](shape)
         spacing, closed = shape.ds, shape.is_closed
     return *place(position, director, shape), spacing, closed
+
+
+def _check_stored(case, name, rod, spacing, segments):
+    """What the case file alone could not tell: the strain twist needs the file's spacing."""
+    if spacing is None:
+        reason = "missing: a text table needs the spacing of its points at rest"
+        raise CaseError([case.source.problem(("rods", name, "shape", "spacing"), reason)])
+    errors, _ = check_strain_twist(rod, spacing, segments, case.time.end)
+    if errors:
+        where = ("rods", name)
+        raise CaseError([case.source.problem((*where, *path), reason) for path, reason in errors])
 
 
 def _tables(case, built):

@@ -150,6 +150,32 @@ def test_coarse_rod_is_a_warning(load):
     assert "abs(Omega) ds = 1.178" in warning.reason
 
 
+@pytest.mark.parametrize(
+    ("overrides", "key"),
+    [
+        (["time.step=1e-3"], "time.step"),
+        (["time.integrator=euler", "time.step=1e-3", "time.tolerance=1e-3"], "time.tolerance"),
+    ],
+)
+def test_what_the_integrator_ignores_is_a_warning(load, overrides, key):
+    (warning,) = load(RING, overrides).warnings
+    assert warning.key == key
+    assert warning.reason.startswith("ignored: ")
+
+
+@pytest.mark.parametrize(
+    ("overrides", "interval"),
+    [
+        (["time.integrator=rk4", "time.step=1e-3"], 2e-3),
+        (["time.integrator=rk4", "time.step=8e-4"], 2.4e-3),  # end/100 = 2.5 steps
+        (["time.integrator=euler", "time.step=0.1"], 0.1),  # not less than a step
+        (["output.interval=0.7"], 0.7),  # longer than the run: frames at 0 and end only
+    ],
+)
+def test_interval(load, overrides, interval):
+    assert load(RING, overrides).interval == pytest.approx(interval, rel=1e-12)
+
+
 def test_rest_state_is_looked_for_at_the_end_as_well(load):
     with pytest.raises(CaseError, match=r"t = 0\.2: above 2"):
         load(RING, ["rods.ring.strain_twist=['200*t', 0, 0]"])
@@ -240,7 +266,7 @@ def test_schema_knows_the_unions_and_describes_every_key():
 
 
 def test_same_data_as_an_ordinary_yaml_reader(load):
-    text = template("ring").replace("1.0e-", "1.0e-")  # floats both readers agree on
+    text = template("ring")
     plain = yaml.safe_load(text)
     case = load(text)
     assert case.fluid.viscosity == plain["fluid"]["viscosity"]

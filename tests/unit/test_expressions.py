@@ -119,7 +119,7 @@ def test_invalid_is_nan_without_a_warning():
     ],
 )
 def test_refused(text, words):
-    with pytest.raises(ExpressionError, match=".") as caught:
+    with pytest.raises(ExpressionError) as caught:
         Expression(text, P)
     assert words in str(caught.value)
 

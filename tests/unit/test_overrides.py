@@ -42,9 +42,9 @@ def change(tmp_path):
         (["rods.tail.strain_twist=null"], lambda c: c.rods["tail"].strain_twist, (0.0, 0.0, 0.0)),
         (["fluid.epsilon={spacings: 6}"], lambda c: c.fluid.epsilon.spacings, 6.0),
         (
-            ["rods.tail.shape.length=null", "rods.tail.shape.spacing=0.2"],
+            ["rods.tail.shape.length=null", "rods.tail.shape.spacing=0.02"],
             lambda c: c.rods["tail"].shape.ds,
-            0.2,
+            0.02,
         ),
         (
             ["rods.tail.shape.rotate.axis=[0, 0, 1]", "rods.tail.shape.rotate.degrees=30"],
