@@ -66,7 +66,9 @@ set_option = click.option(
 case_argument = click.argument("case_path", metavar="CASE.yaml", type=click.Path(path_type=Path))
 output_argument = click.argument("output", metavar="OUT.h5", type=click.Path(path_type=Path))
 threads_option = click.option(
-    "--threads", type=click.IntRange(1, 1024), help="Number of threads; by default as many as the scene is worth."
+    "--threads",
+    type=click.IntRange(1, 1024),
+    help="Number of threads; by default as many as the scene is worth.",
 )
 
 

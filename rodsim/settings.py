@@ -18,7 +18,7 @@ def prepare() -> None:
     nothing stale there. Variables that the user has set are left alone.
     """
     os.environ.setdefault("NUMBA_CACHE_DIR", str(cache_folder()))
-    if "NUMBA_THREADING_LAYER" not in os.environ:
+    if os.environ.get("NUMBA_THREADING_LAYER", "tbb") == "tbb":
         os.environ["NUMBA_THREADING_LAYER"] = "tbb" if _load_tbb() else "default"
     # GNU OpenMP's idle threads spin: with a busy neighbour each sum then takes milliseconds.
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")

@@ -25,13 +25,9 @@ class EnergyTable:
 
     def text(self) -> str:
         """Return the table as aligned text."""
-        heads = self._heads()
-        lines = ["  ".join(f"{head:>14}" for head in heads)]
-        widths = [max(14, len(head)) for head in heads]
-        lines += [
-            "  ".join(f"{value:>{width}.6e}" for value, width in zip(row, widths, strict=True))
-            for row in self.rows
-        ]
+        lines = [f"energies in {self.unit}, time in {self.time_unit}"]
+        lines.append("  ".join(f"{name:>13}" for name in self.columns))
+        lines += ["  ".join(f"{value:13.6e}" for value in row) for row in self.rows]
         return "\n".join(lines)
 
     def write_csv(self, path) -> None:
@@ -55,6 +51,8 @@ def energy_table(path, kelvin: float | None = None) -> EnergyTable:
     are not ones that kT can be converted to.
     """
     with open_trajectory(path) as run:
+        if run.frames == 0:
+            raise FileError(f"{path}: has no frames yet ({run.status})")
         parts = [run.observable(f"{part}_energy").sum(axis=1) for part in PARTS]
         columns = ["time", *PARTS, "total"]
         series = [run.time, *parts, np.sum(parts, axis=0)]

@@ -9,7 +9,6 @@ from __future__ import annotations
 import errno
 import os
 import shutil
-from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -22,45 +21,48 @@ from rodsim.output.layout import CLOCK, Plan
 from rodsim.output.vtkhdf import build_view
 from rodsim.units import unit_text
 
-# Beside the values: time, step and the offsets of ParaView's view, per frame; headers, per file.
-FRAME_BYTES, FILE_BYTES = 200, 2**18
+# Beside the values: time, step and offsets of ParaView's view per frame, the two checkpoints per
+# point, headers per file. Generous: what is reserved and not used is given back at the end.
+FRAME_BYTES, POINT_BYTES, FILE_BYTES = 120, 1000, 2**17
+
+abandoned = []  # files that could not be written: HDF5 can crash the process in closing them
 
 
 def build_file(path: Path, plan: Plan) -> h5py.File:
     """Create ``path``, which must not exist, and return it open, complete and on the disk.
 
-    Raises FileError where it cannot fit, OSError where it cannot be written; then no file is left.
+    Raises FileError where it cannot fit or cannot be written; then no file is left.
     """
-    _check_room(path, plan)
-    file = h5py.File(path, "x", locking=False)
-    try:
-        _reserve(file, plan.value_bytes())
-        _add_root(file)
-        _add_case(file.create_group("case"), plan)
-        _add_rods(file.create_group("rods"), plan.rods)
-        _add_series(file, plan)
-        _add_runtime(file.create_group("runtime"))
-        file.create_group("checkpoint")
-        build_view(file, plan)
-        file.flush()
-        os.fsync(file.id.get_vfd_handle())
-    except BaseException:
-        with suppress(Exception):
-            file.close()
-        path.unlink(missing_ok=True)
-        raise
-    return file
-
-
-def _check_room(path, plan):
-    text = len(plan.case.source) + len(plan.case.resolved) + sum(map(len, plan.case.overrides))
-    needed = plan.value_bytes() + FRAME_BYTES * len(plan.times) + FILE_BYTES + 4 * text
+    needed = _room(plan)
     free = shutil.disk_usage(path.parent).free
     if needed > free:
         raise FileError(
             f"the output needs {_size(needed)}, {_size(free)} are free: "
             "give a longer output.interval or fewer output.fields"
         )
+    file = h5py.File(path, "x", locking=False)
+    try:
+        _reserve(file, needed)
+        _fill(file, plan)
+    except BaseException as error:
+        path.unlink(missing_ok=True)
+        abandoned.append(file)
+        if isinstance(error, RuntimeError):  # HDF5's own words for a failed write
+            raise FileError(f"HDF5 could not write it: {error}") from error
+        raise
+    return file
+
+
+def trim(file: h5py.File) -> None:
+    """Give back what was reserved and is not used."""
+    file.flush()
+    os.ftruncate(file.id.get_vfd_handle(), file.id.get_filesize())
+
+
+def _room(plan):
+    texts = (plan.case.source, plan.case.resolved, *plan.case.overrides)
+    count = plan.value_bytes() + FRAME_BYTES * len(plan.times) + 4 * sum(map(len, texts))
+    return count + POINT_BYTES * (plan.points + plan.tracers) + FILE_BYTES
 
 
 def _size(count):
@@ -72,7 +74,7 @@ def _size(count):
 
 
 def _reserve(file, count):
-    """Take the disk space at once: a quota or a full disk shows before minutes of filling."""
+    """Take the disk space before HDF5 writes: a full disk can make it crash, this only fails."""
     if not hasattr(os, "posix_fallocate"):
         return
     try:
@@ -80,6 +82,18 @@ def _reserve(file, count):
     except OSError as error:
         if error.errno not in (errno.EINVAL, errno.EOPNOTSUPP, errno.ENOSYS):
             raise
+
+
+def _fill(file, plan):
+    _add_root(file)
+    _add_case(file.create_group("case"), plan)
+    _add_rods(file.create_group("rods"), plan.rods)
+    _add_series(file, plan)
+    _add_runtime(file.create_group("runtime"))
+    file.create_group("checkpoint")
+    build_view(file, plan)
+    file.flush()
+    os.fsync(file.id.get_vfd_handle())
 
 
 def _add_root(file):

@@ -10,13 +10,11 @@ import numpy as np
 
 from rodsim.errors import FileError
 from rodsim.output import layout
-from rodsim.output.build import build_file
+from rodsim.output.build import abandoned, build_file, trim
 from rodsim.output.checkpoint import CheckpointWriter
 from rodsim.output.layout import CLOCK, Plan
 from rodsim.output.paths import OutputLock, take_place, temporary_name
 from rodsim.output.vtkhdf import count_frames, show_frame
-
-_abandoned = []  # files that could not be written: closing them can end the process in a crash
 
 
 class TrajectoryWriter:
@@ -35,6 +33,7 @@ class TrajectoryWriter:
         self.path, self.times, self.renamed_to = path, plan.times, None
         self.committed = 0
         self._file, self._plan, self._lock = file, plan, lock
+        self._values = {s.where: file[f"{s.where}/value"] for s in plan.stored()}
         self._checkpoint = CheckpointWriter(file["checkpoint"])
 
     @classmethod
@@ -106,7 +105,7 @@ class TrajectoryWriter:
         rows |= {s.where: _row(s, observables, 0) for s in self._plan.observables_stored()}
         with self._writing() as file:
             for where, row in rows.items():
-                file[f"{where}/value"][index] = row
+                self._values[where][index] = row
             file[f"{CLOCK}/time"][index] = self.times[index]
             file[f"{CLOCK}/step"][index] = step
             file.flush()
@@ -137,7 +136,7 @@ class TrajectoryWriter:
                 self.update_runtime(runtime)
                 with self._writing() as file:
                     file.attrs.modify("status", _short(status))
-                    file.flush()
+                    trim(file)
                     file.close()
         finally:
             self._file = None
@@ -159,7 +158,7 @@ class TrajectoryWriter:
         try:
             yield self._file
         except (OSError, RuntimeError) as error:
-            _abandoned.append(self._file)
+            abandoned.append(self._file)
             self._file = None
             raise FileError(
                 f"{self.path}: writing failed: {error}; its first {self.committed} frames are safe"

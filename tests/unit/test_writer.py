@@ -1,7 +1,10 @@
 """What is written is what is in the file: layout, order, counters, checkpoints, failures."""
 
 import errno
+import os
 import shutil
+import subprocess
+import sys
 
 import h5py
 import numpy as np
@@ -203,6 +206,46 @@ def test_a_full_disk_leaves_the_old_output(tmp_path, monkeypatch, fails):
         create(path)
     assert path.read_text() == "precious"
     assert [entry.name for entry in tmp_path.iterdir()] == ["out.h5"]
+
+
+FULL = """
+import resource, signal, sys
+from outputs import create
+from rodsim.errors import FileError
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # a write beyond the limit fails, as on a full disk
+resource.setrlimit(resource.RLIMIT_FSIZE, (40_000, 40_000))
+try:
+    create(sys.argv[1])
+except FileError as error:
+    print(error)
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "posix_fallocate"), reason="needs posix_fallocate")
+def test_hdf5_never_meets_a_full_disk(tmp_path):
+    path = tmp_path / "out.h5"
+    path.write_text("precious")
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    command = [sys.executable, "-c", FULL, str(path)]
+    done = subprocess.run(command, capture_output=True, text=True, env=environment)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.endswith("out.h5: cannot be written: File too large\n")
+    assert path.read_text() == "precious"
+    assert os.listdir(tmp_path) == ["out.h5"]
+
+
+@pytest.mark.parametrize(
+    "rods", [RODS, [RodRecord(f"rod{i}", 2 * i, 2, False, 0.5, (2.5,) * 6) for i in range(90)]]
+)
+@pytest.mark.parametrize("frames", [1, 5000])
+def test_what_is_reserved_is_enough(tmp_path, rods, frames):
+    times = 0.3 * np.arange(frames)
+    points = sum(rod.count for rod in rods)
+    with create(tmp_path / "out.h5", rods=rods, times=times) as writer:
+        reserved = (tmp_path / "out.h5").stat().st_size
+        writer.checkpoint({"X": np.zeros((3, points)), "D": np.zeros((9, points))})
+        assert (tmp_path / "out.h5").stat().st_size == reserved
+    assert (tmp_path / "out.h5").stat().st_size < reserved
 
 
 def test_an_absurd_size_is_refused_at_once(tmp_path):

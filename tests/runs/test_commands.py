@@ -1,0 +1,267 @@
+"""The commands as users meet them: what they print, where, and how they end."""
+
+import csv
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from scenes import CONFIGS
+
+import rodsim
+from rodsim import open_trajectory
+from rodsim.cli import main
+
+RING = str(CONFIGS / "closed_ring.yaml")
+SHORT = ("--set", "rods.ring.shape.points=40", "--set", "time.end=2e-3")
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def call(*arguments):
+    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+def wait_for_frames(path):
+    for _ in range(600):
+        time.sleep(0.05)
+        if path.exists():
+            with open_trajectory(path) as trajectory:
+                if trajectory.frames:
+                    return
+    raise AssertionError("no frame within 30 s")
+
+
+def test_run_then_energy_in_an_empty_folder(here):
+    run = call("run", RING, *SHORT)
+    assert run.exit_code == 0
+    assert run.stdout == ""  # results go to the file, all else to stderr
+    assert "finished: 3 frames in out.h5" in run.stderr
+    assert "evaluations" in run.stderr
+    assert "compile" in run.stderr
+    assert [path.name for path in here.iterdir()] == ["out.h5"]  # no lock, nothing temporary
+    energy = call("energy", "out.h5")
+    assert energy.exit_code == 0
+    lines = energy.stdout.splitlines()
+    assert lines[0] == "energies in g um^2 s^-2, time in s"
+    assert lines[1].split() == ["time", "bending", "twisting", "shear", "stretch", "total"]
+    rows = np.array([line.split() for line in lines[2:]], dtype=float)
+    assert rows[:, 0] == pytest.approx([0.0, 1e-3, 2e-3])
+    assert rows[:, 1:5].sum(axis=1) == pytest.approx(rows[:, 5], rel=1e-5)
+
+
+def test_energy_in_kt_and_to_csv(here):
+    call("run", RING, *SHORT, "-q")
+    plain, thermal = (
+        call("energy", "out.h5"),
+        call("energy", "out.h5", "--kT", 298, "--csv", "e.csv"),
+    )
+    total = [float(result.stdout.splitlines()[2].split()[-1]) for result in (plain, thermal)]
+    assert total[0] / total[1] == pytest.approx(4.114e-6, rel=2e-4)  # four printed digits
+    with open("e.csv", newline="") as stream:
+        table = list(csv.reader(stream))
+    assert table[0][:2] == ["time (s)", "bending (kT at 298 K)"]
+    assert len(table) == 4
+    assert float(table[1][-1]) == pytest.approx(total[1], rel=1e-6)
+
+
+def test_energy_picture(here):
+    pytest.importorskip("matplotlib")
+    call("run", RING, *SHORT, "-q", "--set", "fluid.density=1e-12")
+    assert call("energy", "out.h5", "--plot", "e.png").exit_code == 0
+    assert (here / "e.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+    refused = call("energy", "out.h5", "--plot", "e.nonsense")
+    assert refused.exit_code == 4
+    assert "e.nonsense" in refused.stderr
+
+
+def test_an_existing_output_is_renamed_or_replaced(here):
+    (here / "out.h5").write_text("precious")
+    run = call("run", RING, *SHORT)
+    assert "the earlier out.h5 is now out.1.h5" in run.stderr
+    assert (here / "out.1.h5").read_text() == "precious"
+    call("run", RING, *SHORT, "--overwrite")
+    assert sorted(path.name for path in here.iterdir()) == ["out.1.h5", "out.h5"]
+
+
+def test_an_output_that_another_process_is_writing_is_refused(here):
+    with subprocess.Popen(
+        [sys.executable, "-m", "rodsim", "run", RING, "--set", "time.tolerance=1e-9"],
+        stderr=subprocess.DEVNULL,
+    ) as writer:
+        wait_for_frames(here / "out.h5")
+        refused = call("run", RING, *SHORT)
+        writer.send_signal(signal.SIGINT)
+        writer.wait()
+    assert refused.exit_code == 4
+    assert f"process {writer.pid}" in refused.stderr
+    assert writer.returncode == 75
+    with open_trajectory("out.h5") as trajectory:
+        assert trajectory.status == "stopped"
+        assert trajectory.frames >= 1
+
+
+def test_a_run_that_diverges_keeps_its_frames_and_says_what_to_do(here):
+    """Forward Euler above its limit, 7.4e-5 s here: the frames before it bursts are in the file."""
+    run = call(
+        "run", RING, *SHORT, "--set", "time.integrator=euler", "--set", "time.step=1e-4",
+        "--set", "output.interval=1e-4",
+    )  # fmt: skip
+    assert run.exit_code == 3
+    assert "diverged in step" in run.stderr
+    assert "rod 'ring', point" in run.stderr
+    assert "halve time.step, or use integrator: rkc" in run.stderr
+    assert "Traceback" not in run.stderr
+    with open_trajectory("out.h5") as trajectory:
+        assert trajectory.status == "diverged"
+        assert trajectory.frames >= 2
+        assert f"Last good frame: {trajectory.frames - 1}" in run.stderr
+        assert np.isfinite(trajectory.position).all()
+
+
+def test_frames_are_at_their_exact_times(here):
+    call("run", RING, *SHORT, "-q", "--set", "output.interval=3e-4")
+    with open_trajectory("out.h5") as trajectory:
+        expected = [*(3e-4 * np.arange(7)), 2e-3]
+        assert trajectory.time == pytest.approx(expected, rel=1e-12)
+        assert trajectory.time[-1] == 2e-3
+    fixed = ("--set", "time.integrator=rk4", "--set", "time.step=1e-6", "--set", "time.end=2e-5")
+    call("run", RING, *SHORT, *fixed, "-q", "--set", "output.interval=5e-6", "--overwrite")
+    with open_trajectory("out.h5") as trajectory:
+        assert trajectory.steps.tolist() == [0, 5, 10, 15, 20]
+
+
+def test_dry_run_and_info_describe_without_writing(here):
+    for result in (call("run", RING, "--dry-run"), call("info", RING)):
+        assert result.exit_code == 0
+        assert "rod ring: 200 points, closed" in result.stdout
+        assert "fastest rate" in result.stdout
+        assert "euler: stable up to a step of 3.0" in result.stdout
+    assert list(here.iterdir()) == []
+
+
+def test_info_of_an_output(here):
+    call("run", RING, *SHORT, "-q")
+    result = call("info", "out.h5")
+    assert result.exit_code == 0
+    assert "finished, 3 frames, t = 0 to 0.002 s" in result.stdout
+    assert "--set time.end=2e-3" in result.stdout
+
+
+@pytest.mark.parametrize("kind", ["open", "ring", "flagellum"])
+def test_new_writes_a_case_that_is_valid(kind, here):
+    assert call("new", kind, "case.yaml").exit_code == 0
+    assert call("new", kind).stdout == (here / "case.yaml").read_text()
+    valid = call("validate", "case.yaml")
+    assert (valid.exit_code, valid.stdout) == (0, "case.yaml: valid\n")
+    again = call("new", kind, "case.yaml")
+    assert again.exit_code == 4
+    assert "exists already" in again.stderr
+
+
+def test_validate_reports_on_every_file(here):
+    (here / "bad.yaml").write_text("fluid: {viscosity: -2, epsilon: 0.3}\n")
+    result = call("validate", RING, "bad.yaml")
+    assert result.exit_code == 2
+    assert f"{RING}: valid" in result.stdout
+    assert "bad.yaml:1: fluid.viscosity = -2: must be > 0" in result.stderr
+
+
+def test_schema_is_json_and_accepts_the_configs(here):
+    schema = json.loads(call("schema").stdout)
+    assert schema["$schema"] == "http://json-schema.org/draft-07/schema#"
+    assert set(schema["required"]) == {"fluid", "rods", "time"}
+
+
+def test_version():
+    assert rodsim.__version__ in call("--version").stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("energy", "missing.h5"), "missing.h5: no such file"),
+        (("energy", "text.h5"), "not an HDF5 file"),
+        (("info", "text.h5"), "not an HDF5 file"),
+        (("run", RING, "-o", "no/such/folder/out.h5"), "no folder"),
+    ],
+)
+def test_files_that_are_no_use_end_with_code_4_in_one_line(arguments, words, here):
+    (here / "text.h5").write_text("hello")
+    result = call(*arguments)
+    assert result.exit_code == 4
+    assert words in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+
+
+def test_a_missing_shape_file_is_an_error_4(here):
+    (here / "case.yaml").write_text(
+        "fluid: {viscosity: 2e-6, epsilon: 0.3}\n"
+        "rods: {r: {shape: {kind: file, path: gone.txt, spacing: 0.2},"
+        " moduli: {bending: 3e-3, twisting: 2e-3, shear: 0.7, stretch: 0.9}}}\n"
+        "time: {end: 0.5}\n"
+    )
+    result = call("run", "case.yaml")
+    assert result.exit_code == 4
+    assert "gone.txt: no such file" in result.stderr
+
+
+def test_a_rod_starts_from_an_earlier_output(here):
+    call("run", RING, *SHORT, "-q", "-o", "first.h5")
+    text = (CONFIGS / "closed_ring.yaml").read_text()
+    shape = text[text.index("{kind: ring") : text.index("}", text.index("{kind: ring")) + 1]
+    (here / "next.yaml").write_text(text.replace(shape, "{kind: file, path: first.h5, frame: 1}"))
+    result = call("run", "next.yaml", "--set", "time.end=1e-4", "-o", "next.h5")
+    assert result.exit_code == 0, result.stderr
+    with open_trajectory("first.h5") as first, open_trajectory("next.h5") as then:
+        assert np.array_equal(then.position[0], first.position[1])
+        assert np.array_equal(then.director[0], first.director[1])
+        assert then.rods[0].closed
+        assert then.rods[0].spacing == first.rods[0].spacing
+
+
+def test_quiet_says_nothing(here):
+    result = call("run", RING, *SHORT, "-q")
+    assert (result.exit_code, result.output) == (0, "")
+
+
+def test_ctrl_c_keeps_what_there_is_and_ends_with_75(here):
+    with subprocess.Popen(
+        [sys.executable, "-m", "rodsim", "run", RING, "--set", "time.tolerance=1e-9"],
+        stderr=subprocess.PIPE, text=True,
+    ) as writer:  # fmt: skip
+        wait_for_frames(here / "out.h5")
+        writer.send_signal(signal.SIGINT)
+        _, said = writer.communicate()
+    assert writer.returncode == 75
+    assert "Traceback" not in said
+    assert "interrupted" in said
+    assert not (here / "out.h5.lock").exists()
+
+
+def test_a_read_only_folder_is_an_error_4(here):
+    if os.geteuid() == 0:
+        pytest.skip("root may write anywhere")
+    folder = here / "closed"
+    folder.mkdir()
+    folder.chmod(0o500)
+    result = call("run", RING, *SHORT, "-o", folder / "out.h5")
+    assert result.exit_code == 4
+
+
+def test_a_disk_that_is_too_small_shows_before_the_run(here, monkeypatch):
+    monkeypatch.setattr(shutil, "disk_usage", lambda path: shutil._ntuple_diskusage(9, 9, 1000))
+    result = call("run", RING, *SHORT)
+    assert result.exit_code == 4
+    assert "1 kB are free" in result.stderr
+    assert list(here.iterdir()) == []
