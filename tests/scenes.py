@@ -1,5 +1,6 @@
 """Scenes of the shipped configs, changed by ``--set`` strings, and runs of them in memory."""
 
+from collections import deque
 from pathlib import Path
 
 import numpy as np
@@ -28,12 +29,16 @@ def system_of(config, *overrides):
     return case, RodSystem(build_scene(case))
 
 
+def last(steps):
+    """Return the last of many steps, keeping none of the others."""
+    return deque(steps, maxlen=1).pop()
+
+
 def final_state(config, *overrides):
     """Run a config to its end in memory; return (last state, system, integrator)."""
     case, system = system_of(config, *overrides)
     integrator = make_integrator(case.time, system)
-    for step in integrator.steps(system.scene.initial, case.time.end):
-        pass
+    step = last(integrator.steps(system.scene.initial, case.time.end))
     return step.end, system, integrator
 
 

@@ -65,19 +65,24 @@ class TrajectoryWriter:
         lock = OutputLock(path)
         lock.acquire()
         try:
-            building = temporary_name(path)
-            writer = cls(path, build_file(building, plan), plan, lock)
-            try:
-                writer.renamed_to = take_place(building, path, overwrite)
-            except BaseException:
-                writer._file.close()
-                building.unlink(missing_ok=True)
-                raise
-        except BaseException as error:
+            return cls._build(path, plan, lock, overwrite)
+        except (OSError, FileError) as error:
             lock.release()
-            if isinstance(error, OSError | FileError):
-                reason = getattr(error, "strerror", None) or error
-                raise FileError(f"{path}: cannot be written: {reason}") from error
+            reason = getattr(error, "strerror", None) or error
+            raise FileError(f"{path}: cannot be written: {reason}") from error
+        except BaseException:
+            lock.release()
+            raise
+
+    @classmethod
+    def _build(cls, path, plan, lock, overwrite):
+        building = temporary_name(path)
+        writer = cls(path, build_file(building, plan), plan, lock)
+        try:
+            writer.renamed_to = take_place(building, path, overwrite)
+        except BaseException:
+            writer._file.close()
+            building.unlink(missing_ok=True)
             raise
         return writer
 

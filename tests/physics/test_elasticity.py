@@ -189,7 +189,7 @@ def test_at_rest_every_load_is_zero():
 
 
 def test_strain_of_a_known_rotation():
-    """Triads turned by theta about e: strain 2 sin(theta/2)/ds e^i, half triad turned by theta/2."""
+    """Triads turned by theta about e: strain 2 sin(theta/2)/ds e^i, half triad by theta/2."""
     axis, theta, ds = np.array([0.36, -0.48, 0.8]), 2.9, 0.17
     D = np.empty((3, 3, 2))
     D[:, :, 0] = rotation_matrix((1.0, 0.4, 0.2), 0.8).T

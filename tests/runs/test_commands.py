@@ -115,6 +115,7 @@ def test_a_run_that_diverges_keeps_its_frames_and_says_what_to_do(here):
     """Forward Euler above its limit, 7.4e-5 s here: the frames before it bursts are in the file."""
     run = call(
         "run", RING, *SHORT, "--set", "time.integrator=euler", "--set", "time.step=1e-4",
+        "--set", "time.end=0.02",
         "--set", "output.interval=1e-4",
     )  # fmt: skip
     assert run.exit_code == 3
