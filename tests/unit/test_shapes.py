@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from rodsim.case import load_case
+from rodsim.dynamics import RodSystem
 from rodsim.rods import build_scene
 
 CASE = """
@@ -89,6 +90,30 @@ def test_sine_has_equal_arc_steps_in_its_plane(build):
     assert np.interp(X[2], z, arc) == pytest.approx(np.arange(401) * 9.0 / 400, abs=1e-9)
     assert np.array_equal(D[0], np.array([[1.0], [0.0], [0.0]]).repeat(401, axis=1))
     assert triads_are_orthonormal(D)
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        "{kind: straight, points: 30, length: 2.4, perturbation: 0.01}",
+        "{kind: ring, radius: 1.7, points: 30, twist_perturbation: 0.7}",
+        "{kind: helix, radius: 0.6, pitch: -0.9, points: 30, length: 5.0}",
+        "{kind: sine, amplitude: 0.8, wavelength: 2.1, points: 30, length: 4.0}",
+        "{kind: file, path: rod.txt, spacing: 0.25}",
+        "{kind: file, path: rod.txt, spacing: 0.25, closed: true}",
+    ],
+)
+def test_no_shape_has_a_net_force_or_torque(build, tmp_path, shape):
+    rng = np.random.default_rng(5)
+    triads = np.linalg.qr(rng.normal(size=(9, 3, 3)))[0]
+    triads *= np.sign(np.linalg.det(triads))[:, None, None]
+    rows = np.column_stack([rng.normal(size=(9, 3)), triads.reshape(9, 9)])
+    np.savetxt(tmp_path / "rod.txt", rows)
+    system = RodSystem(build(shape))
+    fields, seen = system.observe(system.scene.initial)
+    size = abs(fields["force"]).sum() + abs(fields["torque"]).sum()
+    assert seen["net_force"] == pytest.approx(0.0, abs=1e-15 * size)
+    assert seen["net_torque"] == pytest.approx(0.0, abs=1e-14 * size)
 
 
 def test_rotate_comes_before_origin(build):

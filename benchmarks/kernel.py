@@ -1,0 +1,109 @@
+"""Nanoseconds per pair of the fused sum, by number of points, threads, blob and variant."""
+
+import click
+import numpy as np
+from common import Spread, Table, Timed, benchmark, curve, interleaved, thread_counts, threads_option
+
+SIZES = (50, 76, 100, 200, 400, 600, 1000, 2000)
+QUICK_SIZES = (50, 200, 600)
+VARIANTS = {  # planar, angular: arguments of rodsim.fluid.velocity_kernel
+    "spatial": (False, True),
+    "no_w": (False, False),
+    "planar": (True, True),
+}
+COLUMNS = {
+    "blob": "blob",
+    "points": "M",
+    "threads": "threads",
+    "spatial": "3-D, ns/pair",
+    "no_w": "3-D without w, ns/pair",
+    "planar": "planar, ns/pair",
+    "planar_ratio": "planar / 3-D",
+    "no_w_ratio": "without w / with w",
+    "speedup": "speed-up, 3-D",
+}
+
+
+@benchmark(full=41, short=7)
+@threads_option
+@click.option("--points", multiple=True, type=click.IntRange(2), help="M; again for more sizes.")
+def main(quick, repeats, threads, points):
+    """Measure the sums (32), (33) alone: ns per pair of points.
+
+    All variants run in rounds in one process, and ratios are taken within a round, so that what
+    disturbs a round disturbs both sides of its ratios.
+    """
+    sizes = points or (QUICK_SIZES if quick else SIZES)
+    counts = thread_counts(threads)
+    keys = [
+        (blob, size, count, variant)
+        for blob in ("algebraic7", "algebraic9")
+        for size in sizes
+        for count in counts
+        for variant in VARIANTS
+    ]
+    timers = {key: Timed(call(*key)) for key in keys}
+    times = {k: np.array(v) for k, v in interleaved(timers, repeats, "kernels").items()}
+    table = Table(
+        "The fused sum, per pair of points",
+        COLUMNS,
+        [row(times, *group) for group in dict.fromkeys(key[:3] for key in keys)],
+    )
+    return [table], lambda *axes: draw(table.rows, *axes)
+
+
+def call(blob, size, threads, variant):
+    """Return a function that evaluates one sum over ``size`` points of a ring."""
+    import numba
+
+    from rodsim.fluid import BLOBS, velocity_kernel
+
+    angle = np.arange(size) * (2.0 * np.pi / size)
+    points = 2.5 * np.stack([0.0 * angle, np.cos(angle), np.sin(angle)])
+    loads = np.random.default_rng(1).standard_normal((6, size))
+    epsilon = 4.0 * 2.5 * 2.0 * np.pi / size
+    kernel = velocity_kernel(BLOBS[blob], *VARIANTS[variant])
+    out = np.empty((6 if VARIANTS[variant][1] else 3, size))
+
+    def evaluate():
+        numba.set_num_threads(threads)
+        kernel(points, points, loads, epsilon, 1e-6, out)
+
+    return evaluate
+
+
+def row(times, blob, size, threads):
+    """Return one row of the table: times over M^2, ratios round by round."""
+    seconds = {variant: times[blob, size, threads, variant] for variant in VARIANTS}
+    fewest = min(key[2] for key in times)
+    return {
+        "blob": blob,
+        "points": size,
+        "threads": threads,
+        **{name: Spread.of(values, 1e9 / size**2) for name, values in seconds.items()},
+        "planar_ratio": Spread.of(seconds["planar"] / seconds["spatial"]),
+        "no_w_ratio": Spread.of(seconds["no_w"] / seconds["spatial"]),
+        "speedup": Spread.of(times[blob, size, fewest, "spatial"] / seconds["spatial"]),
+    }
+
+
+def draw(rows, left, right):
+    """Left: ns per pair against M; right: the ratios, on the fewest threads."""
+    rows = [row for row in rows if row["blob"] == "algebraic7"]
+    counts = sorted({row["threads"] for row in rows})
+    for number, variant in enumerate(VARIANTS):
+        for count in {counts[0], counts[-1]}:
+            chosen = [row for row in rows if row["threads"] == count]
+            style = {"color": f"C{number}", "linestyle": "-" if count == counts[0] else "--"}
+            curve(left, chosen, "points", variant, label=f"{COLUMNS[variant]}, {count}", **style)
+    left.set(xscale="log", yscale="log", xlabel="M", ylabel="ns per pair (algebraic7)")
+    left.legend(title="variant, threads", fontsize="small")
+    chosen = [row for row in rows if row["threads"] == counts[0]]
+    for name in ("planar_ratio", "no_w_ratio"):
+        curve(right, chosen, "points", name, label=COLUMNS[name])
+    right.set(xscale="log", xlabel="M", ylabel=f"ratio, {counts[0]} thread(s)", ylim=(0, 1.2))
+    right.legend()
+
+
+if __name__ == "__main__":
+    main()

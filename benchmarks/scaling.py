@@ -1,0 +1,145 @@
+"""Cost of one evaluation, and memory, against the number of points."""
+
+import time
+import tracemalloc
+
+import click
+from common import (
+    CONFIGS,
+    Spread,
+    Table,
+    benchmark,
+    curve,
+    interleaved,
+    thread_counts,
+    threads_option,
+)
+
+SIZES = (50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000, 50_000, 100_000)
+QUICK_LARGEST = 5000
+COLUMNS = {
+    "points": "M",
+    "threads": "threads",
+    "elastic": "elasticity, us",
+    "sum": "sum, us",
+    "other": "all else, us",
+    "pair": "sum, ns/pair",
+    "share": "share of the sum",
+    "repeats": "repeats",
+    "build": "case and scene, ms",
+    "memory": "memory, kB",
+    "per_point": "bytes per point",
+    "note": "note",
+}
+
+
+@benchmark(full=15, short=5)
+@threads_option
+@click.option("--points", multiple=True, type=click.IntRange(8), help="M; again for more sizes.")
+@click.option("--budget", type=click.FloatRange(0, min_open=True), default=30.0, show_default=True,
+              help="Seconds that one size may take; what needs more is skipped.")  # fmt: skip
+def main(quick, repeats, threads, points, budget):
+    """Measure one evaluation of a ring of M points: elasticity, sum, and the memory it needs.
+
+    The time is foreseen from the size before: repeats are cut to fit the budget, and a size of
+    which a single evaluation does not fit is skipped. Memory is what the arrays of the case, the
+    scene, the system and one pair of increment vectors take, as NumPy counts it.
+    """
+    largest = QUICK_LARGEST if quick else SIZES[-1]
+    counts = thread_counts(threads)
+    rows, pair_seconds = [], 0.0
+    for size in sorted(points) or [size for size in SIZES if size <= largest]:
+        foreseen = pair_seconds * size**2 * len(counts)
+        fit = repeats if foreseen == 0.0 else min(repeats, int(budget / foreseen) - 1)
+        if foreseen > budget:
+            rows.append({"points": size, "note": f"skipped: about {foreseen:.0f} s"})
+            continue
+        new = measure(size, counts, max(1, fit))
+        pair_seconds = max(row["pair"].median for row in new) * 1e-9
+        rows += new
+    table = Table("One evaluation", COLUMNS, rows)
+    return [table], lambda *axes: draw([row for row in rows if "sum" in row], *axes)
+
+
+def measure(size, counts, repeats):
+    """Return the rows of one size, one for each number of threads."""
+    evaluations = {count: Evaluation(size, count) for count in counts}
+    results = interleaved(evaluations, repeats, f"M = {size}")
+    rows = []
+    for count, parts in results.items():
+        elastic, total, wall = zip(*parts, strict=True)
+        both = zip(elastic, total, wall, strict=True)
+        spent = evaluations[count]
+        rows.append(
+            {
+                "points": size,
+                "threads": count,
+                "elastic": Spread.of(elastic, 1e6),
+                "sum": Spread.of(total, 1e6),
+                "other": Spread.of([w - e - s for e, s, w in both], 1e6),
+                "pair": Spread.of(total, 1e9 / size**2),
+                "share": Spread.of([s / w for s, w in zip(total, wall, strict=True)]),
+                "repeats": repeats,
+                "build": 1e3 * spent.build_seconds,
+                "memory": spent.memory / 1024,
+                "per_point": spent.memory / size,
+            }
+        )
+    return rows
+
+
+class Evaluation:
+    """Call it for (elasticity, sum, wall) seconds of one evaluation; small ones are averaged."""
+
+    def __init__(self, size, threads):
+        self.size, self.threads = size, threads
+        begin = time.perf_counter()
+        self._build()
+        self.build_seconds = time.perf_counter() - begin
+        tracemalloc.start()
+        self._build()
+        self.memory, _ = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        self.calls = max(1, int(1e6 / size**2))
+        if size <= 10_000:  # warm up; at larger sizes nothing shows
+            self()
+
+    def _build(self):
+        from rodsim.case import load_case
+        from rodsim.dynamics import RodSystem
+        from rodsim.rods import build_scene
+
+        change = f"rods.ring.shape.points={self.size}"
+        case = load_case(CONFIGS / "closed_ring.yaml", [change])
+        self.system = RodSystem(build_scene(case))
+        self.increments, self.rates = self.system.zeros(), self.system.zeros()
+
+    def __call__(self):
+        import numba
+
+        system, state = self.system, self.system.scene.initial
+        numba.set_num_threads(self.threads)
+        elastic, total = system.elastic_seconds, system.sum_seconds
+        begin = time.perf_counter()
+        for _ in range(self.calls):
+            system.rate(0.0, state, self.increments, self.rates)
+        wall = time.perf_counter() - begin
+        elastic, total = system.elastic_seconds - elastic, system.sum_seconds - total
+        return elastic / self.calls, total / self.calls, wall / self.calls
+
+
+def draw(rows, left, right):
+    """Left: elasticity and sum against M; right: memory against M."""
+    for count in sorted({row["threads"] for row in rows}):
+        chosen = [row for row in rows if row["threads"] == count]
+        for key, line in (("sum", "-"), ("elastic", ":")):
+            curve(left, chosen, "points", key, label=f"{COLUMNS[key]}, {count}", linestyle=line)
+    left.set(xscale="log", yscale="log", xlabel="M", ylabel="an evaluation, us")
+    left.legend(title="part, threads", fontsize="small")
+    memory = {row["points"]: row["memory"] for row in rows}
+    right.loglog(list(memory), list(memory.values()), marker="o")
+    right.set(xlabel="M", ylabel="memory of scene and system, kB")
+
+
+if __name__ == "__main__":
+    main()
