@@ -1,21 +1,20 @@
-"""What the benchmarks share: options, repeats, spreads, tables, CSV and pictures.
+"""What the benchmarks share: options, rounds of measurements, pictures.
 
 A benchmark is a function that returns its tables and a function that draws them; ``benchmark``
 makes a command of it. Numba is imported only inside those functions: by then ``prepare`` has
 chosen its cache and threading layer, as the ``rodsim`` command does.
 """
 
-import csv
 import functools
 import os
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 
 import click
 import numpy as np
-from machine import describe, load_average
+from machine import cores_free, describe
+from tables import show, write_csv
 
 from rodsim.settings import prepare
 
@@ -41,11 +40,12 @@ def benchmark(full: int, short: int):
     def decorate(function):
         @functools.wraps(function)
         def command(quick, repeats, csv_path, plot_path, markdown, **own):
-            load = load_average()
             prepare()
+            free = cores_free()
             repeats = repeats or (short if quick else full)
             tables, draw = function(quick=quick, repeats=repeats, **own)
-            machine = {**describe(), "load average at the start": load}
+            free = f"{free:.1f} before, {cores_free():.1f} after"
+            machine = {**describe(), "cores free": free}
             show(tables, machine, repeats, markdown)
             if csv_path:
                 write_csv(csv_path, tables, machine)
@@ -59,25 +59,6 @@ def benchmark(full: int, short: int):
     return decorate
 
 
-@dataclass(frozen=True)
-class Spread:
-    """Median and quartiles of repeated measurements."""
-
-    median: float
-    low: float
-    high: float
-
-    @classmethod
-    def of(cls, samples, scale=1.0):
-        low, median, high = scale * np.quantile(np.asarray(samples, float), [0.25, 0.5, 0.75])
-        return cls(float(median), float(low), float(high))
-
-    @property
-    def error(self):
-        """Distances of the quartiles from the median, as matplotlib's error bars want them."""
-        return self.median - self.low, self.high - self.median
-
-
 def interleaved(measurements: dict, repeats: int, label: str) -> dict:
     """Return the results of each measurement, by its key, of ``repeats`` rounds over all of them.
 
@@ -85,9 +66,7 @@ def interleaved(measurements: dict, repeats: int, label: str) -> dict:
     results of any two can be compared as a pair.
     """
     results = {key: [] for key in measurements}
-    with click.progressbar(
-        length=repeats * len(measurements), label=label, file=sys.stderr
-    ) as bar:
+    with click.progressbar(length=repeats * len(measurements), label=label, file=sys.stderr) as bar:
         for _ in range(repeats):
             for key, measure in measurements.items():
                 results[key].append(measure())
@@ -113,88 +92,23 @@ class Timed:
 
 
 def thread_counts(text: str | None) -> list[int]:
-    """Return what ``--threads 1,2,4`` lists; by default 1, 2, 3, ... or 1, 2, 4, ... and all."""
+    """Return 1 and what ``--threads 2,4`` lists; by default 2, 3, ... or 2, 4, 8, ... and all."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     if text is None:
         some = range(1, cores) if cores <= 8 else (1 << k for k in range(cores.bit_length()))
-        return sorted({*(n for n in some if n < cores), cores})
+        return sorted({1, *(n for n in some if n < cores), cores})
     try:
-        counts = sorted({int(item) for item in text.split(",")})
+        counts = sorted({1, *(int(item) for item in text.split(","))})
     except ValueError:
         raise click.BadParameter(f"--threads takes numbers such as 1,2,4, not {text!r}") from None
-    if not 1 <= counts[0] <= counts[-1] <= cores:
+    if not 1 == counts[0] <= counts[-1] <= cores:
         raise click.BadParameter(f"--threads must lie between 1 and the number of cores, {cores}")
     return counts
 
 
 threads_option = click.option(
-    "--threads", metavar="N,...", help="Numbers of threads, such as 1,2,4; by default 1 to all."
+    "--threads", metavar="N,...", help="Numbers of threads beside 1, e.g. 2,4; default: up to all."
 )
-
-
-@dataclass
-class Table:
-    """Rows by column key; ``columns`` gives each key its heading with the unit."""
-
-    name: str
-    columns: dict[str, str]
-    rows: list[dict]
-
-    def cells(self):
-        return [[_cell(row.get(key)) for key in self.columns] for row in self.rows]
-
-
-def _digits(value):
-    if isinstance(value, str):
-        return value
-    if isinstance(value, int) or 1000 <= abs(value) < 1e9:
-        return f"{value:.0f}"
-    return f"{value:.3g}"
-
-
-def _cell(value):
-    if value is None:
-        return ""
-    if isinstance(value, Spread):
-        return f"{_digits(value.median)} ({_digits(value.low)}-{_digits(value.high)})"
-    return _digits(value)
-
-
-def show(tables, machine, repeats, markdown):
-    """Print the machine and the tables."""
-    facts = "; ".join(f"{name} {value}" for name, value in machine.items())
-    click.echo(f"{facts}. Medians of {repeats} repeats, with quartiles.")
-    for table in tables:
-        cells = [list(table.columns.values()), *table.cells()]
-        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-        if markdown:
-            cells.insert(1, ["-" * width for width in widths])
-        left, between, right = ("| ", " | ", " |") if markdown else ("", "   ", "")
-        click.echo(f"\n**{table.name}**\n" if markdown else f"\n{table.name}")
-        for row in cells:
-            padded = between.join(text.ljust(width) for text, width in zip(row, widths, strict=True))
-            click.echo(f"{left}{padded}{right}".rstrip())
-
-
-def write_csv(path, tables, machine):
-    """Write all tables to one file; a spread becomes three columns. ``#`` lines: the machine."""
-    rows = [{"table": table.name, **_flat(row)} for table in tables for row in table.rows]
-    names = list(dict.fromkeys(name for row in rows for name in row))
-    with path.open("w", newline="") as stream:
-        stream.writelines(f"# {name}: {value}\n" for name, value in machine.items())
-        writer = csv.DictWriter(stream, names)
-        writer.writeheader()
-        writer.writerows(rows)
-
-
-def _flat(row):
-    flat = {}
-    for key, value in row.items():
-        if isinstance(value, Spread):
-            flat |= {key: value.median, f"{key}_low": value.low, f"{key}_high": value.high}
-        else:
-            flat[key] = value
-    return flat
 
 
 def picture(path, draw):

@@ -2,7 +2,15 @@
 
 import click
 import numpy as np
-from common import Spread, Table, Timed, benchmark, curve, interleaved, thread_counts, threads_option
+from common import (
+    Timed,
+    benchmark,
+    curve,
+    interleaved,
+    thread_counts,
+    threads_option,
+)
+from tables import Spread, Table
 
 SIZES = (50, 76, 100, 200, 400, 600, 1000, 2000)
 QUICK_SIZES = (50, 200, 600)
@@ -75,7 +83,6 @@ def call(blob, size, threads, variant):
 def row(times, blob, size, threads):
     """Return one row of the table: times over M^2, ratios round by round."""
     seconds = {variant: times[blob, size, threads, variant] for variant in VARIANTS}
-    fewest = min(key[2] for key in times)
     return {
         "blob": blob,
         "points": size,
@@ -83,26 +90,29 @@ def row(times, blob, size, threads):
         **{name: Spread.of(values, 1e9 / size**2) for name, values in seconds.items()},
         "planar_ratio": Spread.of(seconds["planar"] / seconds["spatial"]),
         "no_w_ratio": Spread.of(seconds["no_w"] / seconds["spatial"]),
-        "speedup": Spread.of(times[blob, size, fewest, "spatial"] / seconds["spatial"]),
+        "speedup": Spread.of(times[blob, size, 1, "spatial"] / seconds["spatial"]),
     }
 
 
 def draw(rows, left, right):
-    """Left: ns per pair against M; right: the ratios, on the fewest threads."""
+    """Left: ns per pair against M; right: the ratios, serial."""
     rows = [row for row in rows if row["blob"] == "algebraic7"]
-    counts = sorted({row["threads"] for row in rows})
+    most = max(row["threads"] for row in rows)
     for number, variant in enumerate(VARIANTS):
-        for count in {counts[0], counts[-1]}:
+        for count in {1, most}:
             chosen = [row for row in rows if row["threads"] == count]
-            style = {"color": f"C{number}", "linestyle": "-" if count == counts[0] else "--"}
-            curve(left, chosen, "points", variant, label=f"{COLUMNS[variant]}, {count}", **style)
-    left.set(xscale="log", yscale="log", xlabel="M", ylabel="ns per pair (algebraic7)")
+            style = {"color": f"C{number}", "linestyle": "-" if count == 1 else "--"}
+            curve(left, chosen, "points", variant, label=f"{variant}, {count}", **style)
+    left.set(xscale="log", xlabel="M", ylabel="ns per pair (algebraic7)", ylim=(0, None))
     left.legend(title="variant, threads", fontsize="small")
-    chosen = [row for row in rows if row["threads"] == counts[0]]
+    chosen = [row for row in rows if row["threads"] == 1]
     for name in ("planar_ratio", "no_w_ratio"):
         curve(right, chosen, "points", name, label=COLUMNS[name])
-    right.set(xscale="log", xlabel="M", ylabel=f"ratio, {counts[0]} thread(s)", ylim=(0, 1.2))
+    right.set(xscale="log", xlabel="M", ylabel="ratio, serial", ylim=(0, 1.2))
     right.legend()
+    for axes in (left, right):
+        axes.xaxis.set_minor_formatter("")
+        axes.set_xticks([row["points"] for row in chosen], [row["points"] for row in chosen])
 
 
 if __name__ == "__main__":

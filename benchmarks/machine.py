@@ -1,9 +1,11 @@
 """The machine and the software a benchmark ran on."""
 
+import functools
 import math
 import os
 import platform
 import re
+import time
 from importlib.metadata import version
 
 PACKED_SQUARE_ROOT = re.compile(r"sqrtpd\s.*%([xyz])mm")
@@ -19,14 +21,33 @@ def describe() -> dict[str, str]:
         "system": f"{platform.system()} {platform.machine()}",
         "Python": platform.python_version(),
         "packages": ", ".join(f"{name} {version(name)}" for name in ("rodsim", "numba", "numpy")),
-        "threading layer": _threading_layer(numba),
+        "threading layer": numba.threading_layer(),
         "vectors": _vectors(),
     }
 
 
-def load_average() -> str:
-    """Return the load average of the last minute: above 0, somebody else is running."""
-    return f"{os.getloadavg()[0]:.2f}" if hasattr(os, "getloadavg") else "unknown"
+def cores_free(seconds: float = 0.3) -> float:
+    """Return CPU time over wall time of all threads at work: below their number, others run too."""
+    import numpy as np
+
+    work, values = _busy_work(), np.ones(4_000_000)
+    work(values)
+    wall, cpu = time.perf_counter(), time.process_time()
+    while time.perf_counter() - wall < seconds:
+        work(values)
+    return (time.process_time() - cpu) / (time.perf_counter() - wall)
+
+
+@functools.cache
+def _busy_work():
+    import numba
+
+    @numba.njit(parallel=True)
+    def work(values):
+        for i in numba.prange(values.size):
+            values[i] = math.sin(values[i])
+
+    return work
 
 
 def _model():
@@ -41,18 +62,6 @@ def _llvm_name():
     import llvmlite.binding
 
     return llvmlite.binding.get_host_cpu_name()
-
-
-def _threading_layer(numba):
-    @numba.njit(parallel=True)
-    def start(values):
-        for i in numba.prange(values.size):
-            values[i] = i
-
-    import numpy as np
-
-    start(np.empty(2))
-    return numba.threading_layer()
 
 
 def _vectors():

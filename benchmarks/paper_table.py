@@ -4,7 +4,8 @@ import tempfile
 
 import numpy as np
 from child import FLOOR, run_python
-from common import CONFIGS, Spread, Table, interleaved
+from common import CONFIGS, interleaved
+from tables import Spread, Table
 
 PAPER_STEPS = 100_000  # 0.1 s in steps of 1e-6 s (Table 1; the coil is reached "in around 0.1 s")
 PAPER = (  # program, threads, h, min, s, kB
@@ -18,6 +19,7 @@ COLUMNS = {
     "program": "program",
     "threads": "threads",
     "wall": "wall time, s",
+    "clock": "h:min:s",
     "speedup": "against its own serial run",
     "factor": "against the paper's serial run",
     "memory": "peak memory, kB",
@@ -38,7 +40,8 @@ def programs(steps):
     rodsim runs without any, and with two layers of 800.
     """
     end = steps * 1e-6
-    euler = ("time.integrator=euler", "time.step=1e-6", f"time.end={end!r}", f"output.interval={end!r}")
+    method = ("time.integrator=euler", "time.step=1e-6")
+    euler = (*method, f"time.end={end!r}", f"output.interval={end!r}")
     scale = PAPER_STEPS / steps
     return {
         "rodsim, forward Euler, scaled": ("closed_ring", euler, scale),
@@ -60,29 +63,44 @@ def compare(solve, counts, steps, repeats):
     rows = [_paper_row(*entry) for entry in PAPER]
     for name, n in solves:
         wall, serial = (
-            ours[name][2] * np.array([run["wall"] for run in runs[name, m]]) for m in (n, counts[0])
+            ours[name][2] * np.array([run["wall"] for run in runs[name, m]]) for m in (n, 1)
         )
         rows.append(
             {
                 "program": name,
                 "threads": n,
                 "wall": Spread.of(wall),
+                "clock": _clock(float(np.median(wall))),
                 "speedup": Spread.of(serial / wall),
                 "factor": Spread.of(PAPER_SERIAL / wall),
                 "memory": Spread.of(memory[name, n]),
                 "above": Spread.of(memory[name, n] - np.median(memory[None])),
             }
         )
-    title = f"The paper's Table 3, and its run by rodsim (Euler: {steps} of {PAPER_STEPS} steps)"
+    title = (
+        f"The paper's Table 3, and its run by rodsim (Euler: {steps} of {PAPER_STEPS} steps, scaled; "
+        f"{repeats} repeats, memory {MEMORY_REPEATS})"
+    )
     return Table(title, COLUMNS, rows)
 
 
 def _paper_row(program, threads, clock, memory):
     hours, minutes, seconds = clock
     wall = 3600 * hours + 60 * minutes + seconds
-    row = {"program": program, "threads": threads, "wall": wall, "memory": memory}
-    return row | {"speedup": PAPER_SERIAL / wall if "gIB" not in program else None,
-                  "factor": PAPER_SERIAL / wall}  # fmt: skip
+    return {
+        "program": program,
+        "threads": threads,
+        "wall": wall,
+        "clock": _clock(wall),
+        "speedup": None if "gIB" in program else PAPER_SERIAL / wall,
+        "factor": PAPER_SERIAL / wall,
+        "memory": memory,
+    }
+
+
+def _clock(seconds):
+    minutes, rest = divmod(seconds, 60)
+    return f"{minutes // 60:.0f}:{minutes % 60:02.0f}:{rest:04.1f}"
 
 
 def peak_memory(ours, counts):

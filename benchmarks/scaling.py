@@ -6,14 +6,13 @@ import tracemalloc
 import click
 from common import (
     CONFIGS,
-    Spread,
-    Table,
     benchmark,
     curve,
     interleaved,
     thread_counts,
     threads_option,
 )
+from tables import Spread, Table
 
 SIZES = (50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000, 50_000, 100_000)
 QUICK_LARGEST = 5000
@@ -93,15 +92,16 @@ class Evaluation:
 
     def __init__(self, size, threads):
         self.size, self.threads = size, threads
-        begin = time.perf_counter()
-        self._build()
-        self.build_seconds = time.perf_counter() - begin
+        self._build()  # imports and compiles
         tracemalloc.start()
         self._build()
         self.memory, _ = tracemalloc.get_traced_memory()
         tracemalloc.stop()
+        begin = time.perf_counter()
+        self._build()
+        self.build_seconds = time.perf_counter() - begin
         self.calls = max(1, int(1e6 / size**2))
-        if size <= 10_000:  # warm up; at larger sizes nothing shows
+        if size <= 10_000:  # warm up; at larger sizes it would not show
             self()
 
     def _build(self):
@@ -132,8 +132,10 @@ def draw(rows, left, right):
     """Left: elasticity and sum against M; right: memory against M."""
     for count in sorted({row["threads"] for row in rows}):
         chosen = [row for row in rows if row["threads"] == count]
-        for key, line in (("sum", "-"), ("elastic", ":")):
-            curve(left, chosen, "points", key, label=f"{COLUMNS[key]}, {count}", linestyle=line)
+        line = "-" if count == 1 else "--"
+        for key, part, color in (("sum", "sum", "C0"), ("elastic", "elasticity", "C1")):
+            style = {"label": f"{part}, {count}", "linestyle": line, "color": color}
+            curve(left, chosen, "points", key, **style)
     left.set(xscale="log", yscale="log", xlabel="M", ylabel="an evaluation, us")
     left.legend(title="part, threads", fontsize="small")
     memory = {row["points"]: row["memory"] for row in rows}

@@ -6,8 +6,6 @@ import click
 import numpy as np
 from common import (
     CONFIGS,
-    Spread,
-    Table,
     benchmark,
     curve,
     interleaved,
@@ -15,6 +13,7 @@ from common import (
     threads_option,
 )
 from paper_table import compare
+from tables import Spread, Table
 
 SCENES = ("open_rod", "closed_ring", "flagellum")
 COLUMNS = {
@@ -36,7 +35,7 @@ COLUMNS = {
 @benchmark(full=15, short=3)
 @threads_option
 @click.option("--paper-steps", type=click.IntRange(10), default=2000, show_default=True,
-              help="Steps of the paper's run that are measured and scaled to its 100 000.")  # fmt: skip
+              help="Steps of the paper's run to measure and scale to 100 000.")  # fmt: skip
 def main(quick, repeats, threads, paper_steps):
     """Solve the three scenes in memory, serial and threaded; compare with the paper's Table 3.
 
@@ -50,7 +49,7 @@ def main(quick, repeats, threads, paper_steps):
     scenes = Table(
         "Serial against threads",
         COLUMNS,
-        [row(solves[key], runs[key], runs[key[0], counts[0]]) for key in solves],
+        [row(solves[key], runs[key], runs[key[0], 1]) for key in solves],
     )
     steps = min(paper_steps, 200) if quick else paper_steps
     paper = compare(Solve, counts, steps, repeats=max(2, repeats // 3))
@@ -69,7 +68,7 @@ class Solve:
         self.case = load_case(CONFIGS / f"{config}.yaml", overrides)
         self.scene = build_scene(self.case)
         system = RodSystem(self.scene)  # compiles
-        self._integrator(system).steps(self.scene.initial, self.case.time.end).__next__()
+        next(self._integrator(system).steps(self.scene.initial, self.case.time.end))
 
     def _integrator(self, system):
         from rodsim.integrators import make_integrator

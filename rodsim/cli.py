@@ -85,9 +85,10 @@ threads_option = click.option(
 @set_option
 @threads_option
 @click.option("--overwrite", is_flag=True, help="Replace an existing output file.")
+@click.option("--force", is_flag=True, help="Run also with a fixed step above its limit.")
 @click.option("--dry-run", is_flag=True, help="Check the case and say what it would do, no more.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress and no summary.")
-def run(case_path, output, overrides, threads, overwrite, dry_run, quiet):
+def run(case_path, output, overrides, threads, overwrite, force, dry_run, quiet):
     """Run a case and write its trajectory, energies and balances to an HDF5 file."""
     from rodsim import reports
 
@@ -108,6 +109,8 @@ def run(case_path, output, overrides, threads, overwrite, dry_run, quiet):
                 output,
                 overwrite=overwrite,
                 threads=threads,
+                force=force,
+                notify=_warn,
                 progress=progress,
                 summary=summary,
             )
@@ -217,7 +220,11 @@ def _load(path, overrides):
 
 def _say_warnings(case):
     for problem in case.warnings:
-        click.echo(f"warning: {problem}", err=True)
+        _warn(problem)
+
+
+def _warn(text):
+    click.echo(f"warning: {text}", err=True)
 
 
 def _is_hdf5(path):

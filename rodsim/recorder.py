@@ -64,12 +64,13 @@ class Recorder:
         """Write the frame at t = 0."""
         self._write(0, state)
 
-    def passed(self, step) -> None:
-        """Write the frames that lie in a step, each at its exact time."""
-        times = self.writer.times
+    def passed(self, step) -> int:
+        """Write the frames that lie in a step, each at its exact time; return how many."""
+        times, before = self.writer.times, self.frames
         last = step.end.time
         while self.frames < len(times) and times[self.frames] <= last * (1.0 + 1e-12):
             self._write(step.number, step.at(min(times[self.frames], last)))
+        return self.frames - before
 
     def _write(self, number, state):
         begin = perf_counter()

@@ -3,6 +3,8 @@
 import numpy as np
 
 from rodsim.errors import DivergedError, StepFailure
+from rodsim.integrators.fixed import FixedStep
+from rodsim.integrators.limits import RateWatch
 from rodsim.integrators.step import Step
 from rodsim.rods.state import State
 
@@ -17,11 +19,13 @@ ADAPTIVE_REMEDY = (
 
 
 class Watch:
-    """Checks that every value is finite and that no rod has left all bounds."""
+    """Checks that every value is finite, that no rod has left all bounds, and the fastest rate."""
 
-    def __init__(self, system, fixed_step: bool):
+    def __init__(self, system, integrator, follow_rate: bool = True):
         self.system = system
-        self.remedy = FIXED_STEP_REMEDY if fixed_step else ADAPTIVE_REMEDY
+        fixed = isinstance(integrator, FixedStep)
+        self.remedy = FIXED_STEP_REMEDY if fixed else ADAPTIVE_REMEDY
+        self._rates = RateWatch(system, integrator) if fixed and follow_rate else None
         initial = system.scene.initial.position
         self.centre = initial.mean(axis=1, keepdims=True)
         extent = np.abs(initial - self.centre).max()
@@ -36,9 +40,15 @@ class Watch:
             if not finite.all():
                 self._stop(step.number, step.start, f"{name} is not finite", int(finite.argmin()))
         distance = np.abs(state.position - self.centre).max(axis=0)
+        if self._rates:
+            self._rates.follow(step)
         if distance.max() > self.farthest:
             what = f"position has left all bounds, {distance.max():.3g} from the start"
             self._stop(step.number, step.start, what, int(distance.argmax()))
+
+    def frame(self, number: int) -> None:
+        """Remember the last good frame."""
+        self.last_good_frame = number
 
     def stop(self, failure: StepFailure, number: int) -> None:
         """Raise DivergedError for a step that the integrator could not make."""

@@ -33,7 +33,7 @@ class Step:
         With x = (time - start)/size: y = x^2 (3 - 2 x) y_1 + size x (1 - x) [(1 - x) f_0 - x f_1],
         error O(size^4), so it does not lower the order of a method of order 2 or 3.
         """
-        if time == self.end.time:
+        if time == self.end.time or self.rates is None:  # fixed steps end at their frames
             return self.end
         x = (time - self.start.time) / self.size
         f0, f1 = self.rates

@@ -111,13 +111,64 @@ def test_an_output_that_another_process_is_writing_is_refused(here):
         assert trajectory.frames >= 1
 
 
-def test_a_run_that_diverges_keeps_its_frames_and_says_what_to_do(here):
-    """Forward Euler above its limit, 7.4e-5 s here: the frames before it bursts are in the file."""
-    run = call(
-        "run", RING, *SHORT, "--set", "time.integrator=euler", "--set", "time.step=1e-4",
-        "--set", "time.end=0.02",
-        "--set", "output.interval=1e-4",
-    )  # fmt: skip
+EULER = (
+    "--set",
+    "time.integrator=euler",
+    "--set",
+    "time.end=0.02",
+    "--set",
+    "output.interval=1e-4",
+)
+
+
+def test_a_step_above_its_limit_is_refused_before_anything_is_written(here):
+    """40 points: 2/rho is 7.35e-5 s."""
+    run = call("run", RING, *SHORT, *EULER, "--set", "time.step=1e-4")
+    assert run.exit_code == 2
+    assert "--set: time.step = 0.0001: is above the largest stable step of euler" in run.stderr
+    assert "7.3" in run.stderr
+    assert "--force" in run.stderr
+    assert list(here.iterdir()) == []
+
+
+def test_a_step_near_its_limit_is_warned_of(here):
+    near = (
+        "--set",
+        "time.step=6.25e-5",
+        "--set",
+        "time.end=1e-3",
+        "--set",
+        "output.interval=2.5e-4",
+    )
+    run = call("run", RING, *SHORT, *EULER, *near)
+    assert run.exit_code == 0
+    assert "warning: --set: time.step = 6.25e-05: is 85% of the largest stable step" in run.stderr
+
+
+def test_a_rate_that_grows_during_the_run_stops_it_by_name(here):
+    """A rod that coils up as its curvature is raised: its points come closer to each other, and
+    the step that was below its limit by 1 % at first is above it by more than 2 % later."""
+    text = """
+fluid: {viscosity: 1.0e-6, epsilon: 0.2}
+rods:
+  rod:
+    shape: {kind: straight, points: 12, spacing: 0.2}
+    moduli: {bending: 3.0e-3, twisting: 2.0e-3, shear: 0.7, stretch: 0.9}
+    strain_twist: ["min(20000*t, 8)", 0, 2]
+time: {end: 0.01, integrator: euler, step: STEP}
+output: {interval: 1.0e-4}
+"""
+    (here / "case.yaml").write_text(text.replace("STEP", "1.25e-6"))
+    run = call("run", "case.yaml")
+    assert run.exit_code == 3
+    assert "the fastest rate has grown to" in run.stderr
+    with open_trajectory("out.h5") as trajectory:
+        assert trajectory.status == "diverged"
+        assert np.isfinite(trajectory.position).all()
+
+
+def test_a_forced_run_that_diverges_keeps_its_frames_and_says_what_to_do(here):
+    run = call("run", RING, *SHORT, *EULER, "--set", "time.step=1e-4", "--force")
     assert run.exit_code == 3
     assert "diverged in step" in run.stderr
     assert "rod 'ring', point" in run.stderr

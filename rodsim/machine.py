@@ -1,0 +1,26 @@
+"""The compiled parts of a run, put together for one case. Importing this compiles the kernels."""
+
+from rodsim.dynamics import RodSystem
+from rodsim.integrators import make_integrator
+from rodsim.integrators.limits import check_step
+from rodsim.threads import threads_for
+from rodsim.watch import Watch
+
+
+class Machine:
+    """System, integrator and watch of a case."""
+
+    def __init__(self, case, scene, force: bool):
+        """``force``: let a fixed step be above its limit of stability."""
+        self.case, self.force = case, force
+        self.system = RodSystem(scene)
+        self.integrator = make_integrator(case.time, self.system)
+        self.watch = Watch(self.system, self.integrator, follow_rate=not force)
+
+    def threads(self, asked: int | None):
+        """Return the context in which sums run with the threads this scene is worth."""
+        return threads_for(self.system.scene.rods.points, asked)
+
+    def step_warnings(self) -> list:
+        """Return problems of a fixed step near its limit; raises CaseError above it."""
+        return [] if self.force else check_step(self.case, self.system)
