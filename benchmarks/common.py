@@ -13,7 +13,7 @@ from time import perf_counter
 
 import click
 import numpy as np
-from machine import cores_free, describe
+from host import cores_free, describe
 from tables import show, write_csv
 
 from rodsim.settings import prepare

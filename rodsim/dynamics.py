@@ -88,7 +88,7 @@ class RodSystem:
 
     def diagnose(self, state: State) -> int:
         """Return the first point whose triad is a half-turn from the next one's, or -1."""
-        return first_half_turn(state.director, *self.scene.rods.tables[:3])
+        return first_half_turn(state.director, self.scene.rods.tables)
 
     def observe(self, state: State) -> tuple[dict, dict]:
         """Return all fields and observables of a state, for a frame.
@@ -107,7 +107,7 @@ class RodSystem:
             state.position,
             state.director,
             scene.strain_twist(state.time),
-            *rods.tables,
+            rods.tables,
             split,
             length,
         )
@@ -135,5 +135,5 @@ class RodSystem:
 
     def _point_loads(self, t, position, director):
         omega = self.scene.strain_twist(t)
-        point_loads(position, director, omega, *self.scene.rods.tables, self._internal, self._loads)
+        point_loads(position, director, omega, self.scene.rods.tables, self._internal, self._loads)
         return self._loads

@@ -13,26 +13,28 @@ between neighbouring triads, e its axis, V = 1/2 sum_i D^i_k x D^i_(k+1) = sin(t
 
 Neither has a small-angle singularity. At a half-turn c = 0 and the principal square root does not
 exist: the loads become NaN, and ``first_half_turn`` says where.
+
+``rods`` is ``Rods.tables``: first, count, closed, spacing (R,) and moduli (6, R).
 """
 
 import math
 
 import numpy as np
 
-from rodsim.jit import BOOLS, INTS, MAT, TRIADS, VEC, inline, kernel
+from rodsim.jit import MAT, ONE, RODS, TRIADS, VEC, inline, kernel
 
 ENERGIES = ("bending_energy", "twisting_energy", "shear_energy", "stretch_energy")
-RODS = f"{INTS}, {INTS}, {BOOLS}, {VEC}, {MAT}"
+HALF_TURN = 4e-14  # 1 + tr A below this has lost every digit: no direction is left
 
 
 @inline
-def _cosine_squared(D, k, j):
-    """Return cos^2(theta/2) of the rotation from triad k to triad j: (1 + tr A)/4."""
-    trace = 0.0
+def _one_plus_trace(D, k, j):
+    """Return 1 + tr A = 4 cos^2(theta/2) for the rotation A from triad k to triad j."""
+    total = 1.0
     for i in range(3):
         for c in range(3):
-            trace += D[i, c, k] * D[i, c, j]
-    return 0.25 * (1.0 + trace)
+            total += D[i, c, k] * D[i, c, j]
+    return total
 
 
 @inline
@@ -46,34 +48,58 @@ def _axial(D, k, j):
     return 0.5 * vx, 0.5 * vy, 0.5 * vz
 
 
-@kernel(f"void({MAT}, {TRIADS}, int64, int64, float64, {VEC}, {MAT})")
-def segment_strain(X, D, k, j, ds, strain, half):
-    """Strains of the segment from point k to point j.
+@inline
+def _half_director(D, k, j, i, c, vx, vy, vz):
+    """Return V . D^i_k and the three components of D^i at the half point."""
+    along = vx * D[i, 0, k] + vy * D[i, 1, k] + vz * D[i, 2, k]
+    mean = 0.5 / c
+    turn = along / (4.0 * c * c * c * (1.0 + c))
+    return (
+        along,
+        mean * (D[i, 0, k] + D[i, 0, j]) - turn * vx,
+        mean * (D[i, 1, k] + D[i, 1, j]) - turn * vy,
+        mean * (D[i, 2, k] + D[i, 2, j]) - turn * vz,
+    )
 
-    strain (6,): (D^j' . D^l)_i for i = 1, 2, 3 (1/length), then D^i . X' - delta_3i; half (3, 3):
-    the triad of the half point, half[i] = D^(i+1)_(k+1/2). NaN at a half-turn.
-    """
-    c = math.sqrt(max(_cosine_squared(D, k, j), 0.0))
-    if c < 1e-7:  # 1 + tr A has lost every digit: no direction is left
-        c = math.nan
+
+@inline
+def _segment_loads(X, D, omega, moduli, r, ds, k, j, internal):
+    """Write F and N of the segment from point k to point j, (23)-(27), into ``internal``."""
+    trace = _one_plus_trace(D, k, j)
+    c = 0.5 * math.sqrt(trace if trace > HALF_TURN else math.nan)
     vx, vy, vz = _axial(D, k, j)
-    correction = 1.0 / (4.0 * c * c * c * (1.0 + c))
+    dx, dy, dz = (X[0, j] - X[0, k]) / ds, (X[1, j] - X[1, k]) / ds, (X[2, j] - X[2, k]) / ds
+    fx, fy, fz, nx, ny, nz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(3):
-        along = vx * D[i, 0, k] + vy * D[i, 1, k] + vz * D[i, 2, k]
-        strain[i] = along / (c * ds)
-        half[i, 0] = (D[i, 0, k] + D[i, 0, j]) / (2.0 * c) - vx * along * correction
-        half[i, 1] = (D[i, 1, k] + D[i, 1, j]) / (2.0 * c) - vy * along * correction
-        half[i, 2] = (D[i, 2, k] + D[i, 2, j]) / (2.0 * c) - vz * along * correction
-        strain[3 + i] = (
-            half[i, 0] * (X[0, j] - X[0, k])
-            + half[i, 1] * (X[1, j] - X[1, k])
-            + half[i, 2] * (X[2, j] - X[2, k])
-        ) / ds
-    strain[5] -= 1.0
+        along, hx, hy, hz = _half_director(D, k, j, i, c, vx, vy, vz)
+        moment = moduli[i, r] * (along / (c * ds) - omega[i, k])
+        force = moduli[3 + i, r] * (hx * dx + hy * dy + hz * dz - (i == 2))
+        fx += force * hx
+        fy += force * hy
+        fz += force * hz
+        nx += moment * hx
+        ny += moment * hy
+        nz += moment * hz
+    internal[0, k], internal[1, k], internal[2, k] = fx, fy, fz
+    internal[3, k], internal[4, k], internal[5, k] = nx, ny, nz
+
+
+@inline
+def _balance(X, internal, loads, k, before, after):
+    """Write g and m of point k, (30) and (31), from the segments on its two sides."""
+    for c in range(3):
+        p, q = (c + 1) % 3, (c + 2) % 3
+        loads[c, k] = internal[c, k] - internal[c, before]
+        loads[3 + c, k] = (internal[3 + c, k] - internal[3 + c, before]) + 0.5 * (
+            (X[p, after] - X[p, k]) * internal[q, k]
+            - (X[q, after] - X[q, k]) * internal[p, k]
+            + (X[p, k] - X[p, before]) * internal[q, before]
+            - (X[q, k] - X[q, before]) * internal[p, before]
+        )
 
 
 @kernel(f"void({MAT}, {TRIADS}, {MAT}, {RODS}, {MAT}, {MAT})")
-def point_loads(X, D, omega, first, count, closed, spacing, moduli, internal, loads):
+def point_loads(X, D, omega, rods, internal, loads):
     """Point forces and torques of the rods on the fluid, g_k = -f_k ds and m_k = -n_k ds.
 
     F^i = b_i (D^i . X' - delta_3i)                                                  (23)
@@ -81,48 +107,52 @@ def point_loads(X, D, omega, first, count, closed, spacing, moduli, internal, lo
     g_k = F_(k+1/2) - F_(k-1/2)                                                      (30)
     m_k = N_(k+1/2) - N_(k-1/2) + 1/2 (dX x F)_(k+1/2) + 1/2 (dX x F)_(k-1/2)        (31)
 
-    omega (3, N): strain twist at the middle of each segment; moduli (6, R): a_1 a_2 a_3 b_1 b_2
-    b_3; internal (6, N): scratch, F in rows 0-2 and N in rows 3-5 of each segment on return;
-    loads (6, N): g, then m.
+    omega (3, N): strain twist at the middle of each segment; internal (6, N): scratch, F in rows
+    0-2 and N in rows 3-5 of each segment on return; loads (6, N): g, then m.
     """
-    strain = np.empty(6)
-    half = np.empty((3, 3))
-    for r in range(first.size):
-        begin, end = first[r], first[r] + count[r]
-        last = end if closed[r] else end - 1
-        for k in range(begin, last):
-            segment_strain(X, D, k, k + 1 if k + 1 < end else begin, spacing[r], strain, half)
-            for c in range(3):
-                force, moment = 0.0, 0.0
-                for i in range(3):
-                    moment += moduli[i, r] * (strain[i] - omega[i, k]) * half[i, c]
-                    force += moduli[3 + i, r] * strain[3 + i] * half[i, c]
-                internal[c, k] = force
-                internal[3 + c, k] = moment
-        for k in range(last, end):
-            internal[:, k] = 0.0
-        for k in range(begin, end):
-            before = k - 1 if k > begin else end - 1
-            after = k + 1 if k + 1 < end else begin
+    firsts, counts, closed, spacing, moduli = rods
+    for r in range(firsts.size):
+        first, ds = np.uint64(firsts[r]), spacing[r]
+        last = first + np.uint64(counts[r]) - ONE
+        for k in range(first, last):
+            _segment_loads(X, D, omega, moduli, r, ds, k, k + ONE, internal)
+        if closed[r]:
+            _segment_loads(X, D, omega, moduli, r, ds, last, first, internal)
+        else:
             for c in range(6):
-                loads[c, k] = internal[c, k] - internal[c, before]
-            for c in range(3):
-                p, q = (c + 1) % 3, (c + 2) % 3
-                loads[3 + c, k] += 0.5 * (
-                    (X[p, after] - X[p, k]) * internal[q, k]
-                    - (X[q, after] - X[q, k]) * internal[p, k]
-                    + (X[p, k] - X[p, before]) * internal[q, before]
-                    - (X[q, k] - X[q, before]) * internal[p, before]
-                )
+                internal[c, last] = 0.0
+        _balance(X, internal, loads, first, last, first + ONE)
+        for k in range(first + ONE, last):
+            _balance(X, internal, loads, k, k - ONE, k + ONE)
+        _balance(X, internal, loads, last, last - ONE, first)
+
+
+@kernel(f"void({MAT}, {TRIADS}, int64, int64, float64, {VEC}, {MAT})")
+def segment_strain(X, D, k, j, ds, strain, half):
+    """Strains of the segment from point k to point j, and the triad of its half point.
+
+    strain (6,): (D^j' . D^l)_i for i = 1, 2, 3 (1/length), then D^i . X' - delta_3i; half (3, 3):
+    half[i] = D^(i+1)_(k+1/2). NaN at a half-turn.
+    """
+    trace = _one_plus_trace(D, k, j)
+    c = 0.5 * math.sqrt(trace if trace > HALF_TURN else math.nan)
+    vx, vy, vz = _axial(D, k, j)
+    for i in range(3):
+        along, half[i, 0], half[i, 1], half[i, 2] = _half_director(D, k, j, i, c, vx, vy, vz)
+        strain[i] = along / (c * ds)
+        strain[3 + i] = -1.0 if i == 2 else 0.0
+        for axis in range(3):
+            strain[3 + i] += half[i, axis] * (X[axis, j] - X[axis, k]) / ds
 
 
 @kernel(f"void({MAT}, {TRIADS}, {MAT}, {RODS}, {MAT}, {VEC})")
-def energies(X, D, omega, first, count, closed, spacing, moduli, out, length):
+def energies(X, D, omega, rods, out, length):
     """Elastic energy (6) of each rod, split, and its present length.
 
     out (4, R): bending (i = 1, 2), twisting (i = 3), shear (i = 1, 2), stretch (i = 3), each
     1/2 ds sum_k modulus * strain^2 over the segments; length (R,): sum_k |X_(k+1) - X_k|.
     """
+    first, count, closed, spacing, moduli = rods
     strain = np.empty(6)
     half = np.empty((3, 3))
     for r in range(first.size):
@@ -142,12 +172,13 @@ def energies(X, D, omega, first, count, closed, spacing, moduli, out, length):
             )
 
 
-@kernel(f"int64({TRIADS}, {INTS}, {INTS}, {BOOLS})")
-def first_half_turn(D, first, count, closed):
+@kernel(f"int64({TRIADS}, {RODS})")
+def first_half_turn(D, rods):
     """Return the first point whose triad is a half-turn away from the next one's, or -1."""
+    first, count, closed, _, _ = rods
     for r in range(first.size):
         begin, end = first[r], first[r] + count[r]
         for k in range(begin, end if closed[r] else end - 1):
-            if _cosine_squared(D, k, k + 1 if k + 1 < end else begin) < 1e-14:
+            if not _one_plus_trace(D, k, k + 1 if k + 1 < end else begin) > HALF_TURN:
                 return k
     return -1

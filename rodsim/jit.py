@@ -4,10 +4,14 @@
 NaN or an infinity in a state always shows. ``error_model="numpy"``: a checked division would stop
 vectorisation. Signatures are given, so a kernel is compiled (or read from the cache) once, when
 its module is imported, and never again for another array layout.
+
+Loops over points use unsigned indices (``ONE`` and ``np.uint64``): for signed ones Numba adds the
+wrap-around of negative indices to each access, and LLVM then gives up vectorising.
 """
 
 from functools import partial
 
+import numpy as np
 from numba import njit
 
 VEC = "float64[::1]"
@@ -15,6 +19,8 @@ MAT = "float64[:, ::1]"
 TRIADS = "float64[:, :, ::1]"
 INTS = "int64[::1]"
 BOOLS = "boolean[::1]"
+RODS = f"Tuple(({INTS}, {INTS}, {BOOLS}, {VEC}, {MAT}))"  # rods.state.Rods.tables
+ONE = np.uint64(1)
 
 SUM_FLAGS = frozenset({"reassoc", "contract", "arcp", "nsz"})
 

@@ -6,32 +6,64 @@ integrator is an increment (X - X_n, theta); the triads at its end are exp(theta
 
 import math
 
-from rodsim.jit import MAT, TRIADS, kernel
+import numpy as np
+
+from rodsim.jit import MAT, TRIADS, inline, kernel
+
+SERIES_UP_TO = 1.0  # squared angle: there the next terms of the series are below 1e-19
+
+
+@inline
+def _series(angle2):
+    """Return sin(a)/a and (1 - cos(a))/a^2 from a^2 <= 1, by their power series."""
+    a = 1.0 - angle2 / 306.0 * (1.0 - angle2 / 380.0)
+    b = 1.0 - angle2 / 342.0 * (1.0 - angle2 / 420.0)
+    for n in (16, 14, 12, 10, 8, 6, 4, 2):
+        a = 1.0 - angle2 / (n * (n + 1.0)) * a
+        b = 1.0 - angle2 / ((n + 1.0) * (n + 2.0)) * b
+    return a, 0.5 * b
+
+
+@inline
+def _closed_form(angle2):
+    """Return sin(a)/a and (1 - cos(a))/a^2 from a^2 > 0."""
+    angle = math.sqrt(angle2)
+    half = math.sin(0.5 * angle) / angle
+    return math.sin(angle) / angle, 2.0 * half * half
+
+
+@inline
+def _turn(a, b, tx, ty, tz, D, k, out):
+    for i in range(3):
+        dx, dy, dz = D[i, 0, k], D[i, 1, k], D[i, 2, k]
+        cx, cy, cz = ty * dz - tz * dy, tz * dx - tx * dz, tx * dy - ty * dx
+        out[i, 0, k] = dx + a * cx + b * (ty * cz - tz * cy)
+        out[i, 1, k] = dy + a * cy + b * (tz * cx - tx * cz)
+        out[i, 2, k] = dz + a * cz + b * (tx * cy - ty * cx)
 
 
 @kernel(f"void({MAT}, {TRIADS}, {TRIADS})")
 def rotate(theta, D, out):
     """out = exp(theta x) D: Rodrigues' formula (36), the identity where theta = 0.
 
-    theta (3, N); D, out (3, 3, N) with [i, component, point]; out may be D itself.
+    theta (3, N); D, out (3, 3, N) with [i, component, point]; out may be D itself. Angles up to
+    1 rad, which is what steps are made of, take a series that vectorises.
     """
+    largest = 0.0
+    for k in range(np.uint64(theta.shape[1])):
+        angle2 = theta[0, k] ** 2 + theta[1, k] ** 2 + theta[2, k] ** 2
+        largest = angle2 if angle2 > largest else largest
+    if largest <= SERIES_UP_TO:
+        for k in range(np.uint64(theta.shape[1])):
+            tx, ty, tz = theta[0, k], theta[1, k], theta[2, k]
+            a, b = _series(tx * tx + ty * ty + tz * tz)
+            _turn(a, b, tx, ty, tz, D, k, out)
+        return
     for k in range(theta.shape[1]):
         tx, ty, tz = theta[0, k], theta[1, k], theta[2, k]
         angle2 = tx * tx + ty * ty + tz * tz
-        if angle2 < 1e-8:  # series: the next terms are below 1e-19
-            a = 1.0 - angle2 / 6.0
-            b = 0.5 - angle2 / 24.0
-        else:
-            angle = math.sqrt(angle2)
-            a = math.sin(angle) / angle
-            half = math.sin(0.5 * angle) / angle
-            b = 2.0 * half * half
-        for i in range(3):
-            dx, dy, dz = D[i, 0, k], D[i, 1, k], D[i, 2, k]
-            cx, cy, cz = ty * dz - tz * dy, tz * dx - tx * dz, tx * dy - ty * dx
-            out[i, 0, k] = dx + a * cx + b * (ty * cz - tz * cy)
-            out[i, 1, k] = dy + a * cy + b * (tz * cx - tx * cz)
-            out[i, 2, k] = dz + a * cz + b * (tx * cy - ty * cx)
+        a, b = _series(angle2) if angle2 <= SERIES_UP_TO else _closed_form(angle2)
+        _turn(a, b, tx, ty, tz, D, k, out)
 
 
 @kernel(f"void({MAT}, {MAT})")
@@ -41,7 +73,7 @@ def rotation_vector_rate(theta, w):
     The series of the inverse differential of exp, cut after the terms that a method of order 4
     needs; both arrays (3, N).
     """
-    for k in range(theta.shape[1]):
+    for k in range(np.uint64(theta.shape[1])):
         tx, ty, tz = theta[0, k], theta[1, k], theta[2, k]
         wx, wy, wz = w[0, k], w[1, k], w[2, k]
         cx, cy, cz = ty * wz - tz * wy, tz * wx - tx * wz, tx * wy - ty * wx

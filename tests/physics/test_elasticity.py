@@ -40,13 +40,13 @@ def bent(points, length=5.3, seed=2, noise=0.0):
 
 def loads_of(X, D, omega, rods):
     internal, loads = np.empty((6, rods.points)), np.empty((6, rods.points))
-    point_loads(X, D, omega, *rods.tables, internal, loads)
+    point_loads(X, D, omega, rods.tables, internal, loads)
     return loads
 
 
 def energy_of(X, D, omega, rods):
     split, length = np.empty((4, len(rods.names))), np.empty(len(rods.names))
-    energies(X, D, omega, *rods.tables, split, length)
+    energies(X, D, omega, rods.tables, split, length)
     return split
 
 
@@ -210,7 +210,7 @@ def test_a_half_turn_is_found_and_shows_as_nan():
     X = np.zeros((3, 5))
     X[2] = 0.3 * np.arange(5)
     rods = table((5, False, 0.3))
-    assert first_half_turn(D, *rods.tables[:3]) == 2
+    assert first_half_turn(D, rods.tables) == 2
     loads = loads_of(X, D, np.zeros((3, 5)), rods)
     assert np.isnan(loads[:, 2:4]).all()
     assert np.isfinite(loads[:, [0, 1, 4]]).all()
