@@ -13,7 +13,7 @@ from time import perf_counter
 
 import click
 import numpy as np
-from host import cores_free, describe
+from host import Neighbours, describe
 from tables import show, write_csv
 
 from rodsim.settings import prepare
@@ -41,11 +41,10 @@ def benchmark(full: int, short: int):
         @functools.wraps(function)
         def command(quick, repeats, csv_path, plot_path, markdown, **own):
             prepare()
-            free = cores_free()
+            neighbours = Neighbours()
             repeats = repeats or (short if quick else full)
             tables, draw = function(quick=quick, repeats=repeats, **own)
-            free = f"{free:.1f} before, {cores_free():.1f} after"
-            machine = {**describe(), "cores free": free}
+            machine = {"cores used by others meanwhile": str(neighbours), **describe()}
             show(tables, machine, repeats, markdown)
             if csv_path:
                 write_csv(csv_path, tables, machine)
@@ -75,9 +74,13 @@ def interleaved(measurements: dict, repeats: int, label: str) -> dict:
 
 
 class Timed:
-    """Seconds per call: the first call warms up, the rest are as many as make a sample long."""
+    """Call it for the seconds of one call, the mean over a sample of calls.
 
-    def __init__(self, call, sample_seconds=2e-3):
+    The same calls go before each sample, untimed: a thread that slept through the measurements of
+    others starts on the core of the thread that wakes it, and takes milliseconds to find its own.
+    """
+
+    def __init__(self, call, sample_seconds=1e-2):
         self.call = call
         call()
         begin = perf_counter()
@@ -85,10 +88,14 @@ class Timed:
         self.calls = max(1, round(sample_seconds / (perf_counter() - begin)))
 
     def __call__(self):
+        self._run()
         begin = perf_counter()
+        self._run()
+        return (perf_counter() - begin) / self.calls
+
+    def _run(self):
         for _ in range(self.calls):
             self.call()
-        return (perf_counter() - begin) / self.calls
 
 
 def thread_counts(text: str | None) -> list[int]:

@@ -1,6 +1,5 @@
 """The machine and the software a benchmark ran on."""
 
-import functools
 import math
 import os
 import platform
@@ -14,40 +13,38 @@ BITS = {"x": 128, "y": 256, "z": 512}
 
 def describe() -> dict[str, str]:
     """Return what decides how fast rodsim runs, by name. Call after ``settings.prepare``."""
-    import numba
-
     return {
         "CPU": f"{_model()} ({_llvm_name()}), {os.cpu_count()} cores",
         "system": f"{platform.system()} {platform.machine()}",
         "Python": platform.python_version(),
         "packages": ", ".join(f"{name} {version(name)}" for name in ("rodsim", "numba", "numpy")),
-        "threading layer": numba.threading_layer(),
+        "threading layer": _threading_layer(),
         "vectors": _vectors(),
     }
 
 
-def cores_free(seconds: float = 0.3) -> float:
-    """Return CPU time over wall time of all threads at work: below their number, others run too."""
-    import numpy as np
+class Neighbours:
+    """How many cores other processes have used since this object was made."""
 
-    work, values = _busy_work(), np.ones(4_000_000)
-    work(values)
-    wall, cpu = time.perf_counter(), time.process_time()
-    while time.perf_counter() - wall < seconds:
-        work(values)
-    return (time.process_time() - cpu) / (time.perf_counter() - wall)
+    def __init__(self):
+        self.begin = _clocks()
+
+    def __str__(self):
+        if self.begin is None:
+            return "unknown"
+        wall, busy, own = (now - then for now, then in zip(_clocks(), self.begin, strict=True))
+        return f"{max(0.0, (busy - own) / wall):.2f}"
 
 
-@functools.cache
-def _busy_work():
-    import numba
-
-    @numba.njit(parallel=True)
-    def work(values):
-        for i in numba.prange(values.size):
-            values[i] = math.sin(values[i])
-
-    return work
+def _clocks():
+    """Return wall time, and CPU time of all processes and of this one with its children."""
+    try:
+        with open("/proc/stat") as lines:
+            user, nice, system = map(int, lines.readline().split()[1:4])
+    except OSError:
+        return None
+    busy = (user + nice + system) / os.sysconf("SC_CLK_TCK")
+    return time.perf_counter(), busy, sum(os.times()[:4])
 
 
 def _model():
@@ -62,6 +59,19 @@ def _llvm_name():
     import llvmlite.binding
 
     return llvmlite.binding.get_host_cpu_name()
+
+
+def _threading_layer():
+    import numba
+    import numpy as np
+
+    @numba.njit(parallel=True)
+    def start(values):
+        for i in numba.prange(values.size):
+            values[i] = i
+
+    start(np.empty(2))
+    return numba.threading_layer()
 
 
 def _vectors():

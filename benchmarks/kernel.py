@@ -32,7 +32,7 @@ COLUMNS = {
 }
 
 
-@benchmark(full=41, short=7)
+@benchmark(full=21, short=5)
 @threads_option
 @click.option("--points", multiple=True, type=click.IntRange(2), help="M; again for more sizes.")
 def main(quick, repeats, threads, points):

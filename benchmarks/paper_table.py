@@ -78,8 +78,8 @@ def compare(solve, counts, steps, repeats):
             }
         )
     title = (
-        f"The paper's Table 3, and its run by rodsim (Euler: {steps} of {PAPER_STEPS} steps, scaled; "
-        f"{repeats} repeats, memory {MEMORY_REPEATS})"
+        f"The paper's Table 3, and its run by rodsim (Euler: {steps} of {PAPER_STEPS} steps, "
+        f"scaled; {repeats} repeats, memory {MEMORY_REPEATS})"
     )
     return Table(title, COLUMNS, rows)
 

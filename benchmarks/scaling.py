@@ -19,9 +19,9 @@ QUICK_LARGEST = 5000
 COLUMNS = {
     "points": "M",
     "threads": "threads",
-    "elastic": "elasticity, us",
-    "sum": "sum, us",
-    "other": "all else, us",
+    "elastic": "elasticity, ms",
+    "sum": "sum, ms",
+    "other": "all else, ms",
     "pair": "sum, ns/pair",
     "share": "share of the sum",
     "repeats": "repeats",
@@ -73,9 +73,9 @@ def measure(size, counts, repeats):
             {
                 "points": size,
                 "threads": count,
-                "elastic": Spread.of(elastic, 1e6),
-                "sum": Spread.of(total, 1e6),
-                "other": Spread.of([w - e - s for e, s, w in both], 1e6),
+                "elastic": Spread.of(elastic, 1e3),
+                "sum": Spread.of(total, 1e3),
+                "other": Spread.of([w - e - s for e, s, w in both], 1e3),
                 "pair": Spread.of(total, 1e9 / size**2),
                 "share": Spread.of([s / w for s, w in zip(total, wall, strict=True)]),
                 "repeats": repeats,
@@ -100,7 +100,7 @@ class Evaluation:
         begin = time.perf_counter()
         self._build()
         self.build_seconds = time.perf_counter() - begin
-        self.calls = max(1, int(1e6 / size**2))
+        self.calls = max(1, int(1e7 / size**2))
         if size <= 10_000:  # warm up; at larger sizes it would not show
             self()
 
@@ -136,7 +136,7 @@ def draw(rows, left, right):
         for key, part, color in (("sum", "sum", "C0"), ("elastic", "elasticity", "C1")):
             style = {"label": f"{part}, {count}", "linestyle": line, "color": color}
             curve(left, chosen, "points", key, **style)
-    left.set(xscale="log", yscale="log", xlabel="M", ylabel="an evaluation, us")
+    left.set(xscale="log", yscale="log", xlabel="M", ylabel="an evaluation, ms")
     left.legend(title="part, threads", fontsize="small")
     memory = {row["points"]: row["memory"] for row in rows}
     right.loglog(list(memory), list(memory.values()), marker="o")

@@ -57,45 +57,42 @@ def main(quick, repeats, threads, paper_steps):
 
 
 class Solve:
-    """Call it to solve a case in memory: what ``rodsim run`` does between its frames."""
+    """Call it to solve a case in memory: what ``rodsim run`` does between its frames.
+
+    Without the watch over the stability of fixed steps: it costs at the start of a run only, and
+    would be scaled with the rest.
+    """
 
     def __init__(self, config, threads, *overrides):
         from rodsim.case import load_case
-        from rodsim.dynamics import RodSystem
         from rodsim.rods import build_scene
 
         self.name, self.threads = config, threads
         self.case = load_case(CONFIGS / f"{config}.yaml", overrides)
         self.scene = build_scene(self.case)
-        system = RodSystem(self.scene)  # compiles
-        next(self._integrator(system).steps(self.scene.initial, self.case.time.end))
+        next(self._steps(self._machine()))  # compiles
 
-    def _integrator(self, system):
-        from rodsim.integrators import make_integrator
+    def _machine(self):
+        from rodsim.machine import Machine
 
-        return make_integrator(self.case.time, system)
+        return Machine(self.case, self.scene, force=True)
+
+    def _steps(self, machine):
+        return machine.integrator.steps(self.scene.initial, self.case.time.end)
 
     def __call__(self):
         """Return wall, CPU and sum seconds, steps (rejected ones too) and evaluations."""
-        import numba
-
-        from rodsim.dynamics import RodSystem
-        from rodsim.integrators import FIXED_STEP
-        from rodsim.watch import Watch
-
-        numba.set_num_threads(self.threads)
         wall, cpu = time.perf_counter(), time.process_time()
-        system = RodSystem(self.scene)
-        integrator = self._integrator(system)
-        watch = Watch(system, self.case.time.integrator in FIXED_STEP)
-        for step in integrator.steps(self.scene.initial, self.case.time.end):
-            watch.check(step)
+        machine = self._machine()
+        with machine.threads(self.threads):
+            for step in self._steps(machine):
+                machine.watch.check(step)
         return {
             "wall": time.perf_counter() - wall,
             "cpu": time.process_time() - cpu,
-            "sum": system.sum_seconds,
-            "steps": integrator.accepted + integrator.rejected,
-            "evaluations": system.evaluations,
+            "sum": machine.system.sum_seconds,
+            "steps": machine.integrator.accepted + machine.integrator.rejected,
+            "evaluations": machine.system.evaluations,
         }
 
 

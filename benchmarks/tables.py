@@ -57,9 +57,7 @@ def _cell(value):
 def show(tables, machine, repeats, markdown):
     """Print the machine and the tables."""
     facts = "; ".join(f"{name} {value}" for name, value in machine.items())
-    click.echo(
-        f"{facts}. Medians (quartiles) of {repeats} repeats, where a table says no other number."
-    )
+    click.echo(f"{facts}. Medians (quartiles) of {repeats} repeats, unless a table says otherwise.")
     for table in tables:
         cells = [list(table.columns.values()), *table.cells()]
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]

@@ -99,9 +99,12 @@ def run(case_path, output, overrides, threads, overwrite, force, dry_run, quiet)
         click.echo(reports.describe_case(case))
         return
     from rodsim.progress import make_progress
+    from rodsim.warmup import ensure_compiled
+
+    compiled = ensure_compiled(case, lambda line: quiet or click.echo(line, err=True))
     from rodsim.simulation import Summary, simulate
 
-    summary = Summary()
+    summary = Summary(compile_seconds=compiled)
     try:
         with make_progress(case.title or case_path.name, quiet) as progress:
             simulate(

@@ -5,33 +5,59 @@ A step of any integrator runs on the increments y from the state at its start: a
 exp(theta x) D_n, so they stay orthonormal whatever the integrator does with theta.
 """
 
+from contextlib import contextmanager
 from time import perf_counter
 
 import numpy as np
 
 from rodsim.elasticity import ENERGIES, energies, first_half_turn, point_loads
 from rodsim.fluid import BLOBS, velocity_kernel
+from rodsim.jit import MAT, SYSTEM, VEC, kernel
 from rodsim.rods.state import Scene, State
-from rodsim.rotations import rotate, rotation_vector_rate
+from rodsim.rotations import add, rotate, rotation_vector_rate
+
+
+@kernel(f"void({SYSTEM}, {MAT}, {VEC}, {VEC})")
+def evaluate(velocity, flow, rods, fluid, base, work, omega, y, out):
+    """Write (u, w, u at the tracers) at increments ``y`` from the state ``base`` into ``out``.
+
+    velocity, flow: the sums for rods and tracers; fluid: epsilon, viscosity; omega (3, N).
+    """
+    position, director, tracer, internal, loads = work
+    n = position.shape[1]
+    add(base[0], y[: 3 * n].reshape(3, n), position)
+    rotate(y[3 * n : 6 * n].reshape(3, n), base[1], director)
+    point_loads(position, director, omega, rods, internal, loads)
+    velocity(position, position, loads, fluid[0], fluid[1], out[: 6 * n].reshape(6, n))
+    markers = tracer.shape[1]
+    if markers > 0:
+        add(base[2], y[6 * n :].reshape(3, markers), tracer)
+        flow(tracer, position, loads, fluid[0], fluid[1], out[6 * n :].reshape(3, markers))
+
+
+@kernel(f"void({VEC}, {VEC})")
+def to_increments(y, velocities):
+    """Turn velocities at increments ``y`` into dy/dt, in place: w becomes d theta/dt.
+
+    Tracers come after the rods' 6 N numbers; their part must have been cut off both vectors.
+    """
+    n = y.size // 6
+    rotation_vector_rate(y[3 * n :].reshape(3, n), velocities[3 * n :].reshape(3, n))
 
 
 class RodSystem:
-    """Rates of a scene. Holds the work arrays, counts evaluations, times their two parts."""
+    """Rates of a scene. Holds the work arrays, counts evaluations and their time."""
 
     def __init__(self, scene: Scene):
         self.scene = scene
         n, p = scene.rods.points, scene.initial.tracer.shape[1]
         self.rod_size, self.size = 6 * n, 6 * n + 3 * p
         self.evaluations = 0
-        self.sum_seconds = 0.0
-        self.elastic_seconds = 0.0
+        self.seconds = 0.0
         self._shape = (6, n)
-        self._position = np.empty((3, n))
-        self._director = np.empty((3, 3, n))
-        self._tracer = np.empty((3, p))
-        self._internal = np.empty((6, n))
-        self._loads = np.empty((6, n))
+        self._work = np.empty((3, n)), np.empty((3, 3, n)), np.empty((3, p)), *np.empty((2, 6, n))
         self._velocity = velocity_kernel(BLOBS[scene.blob], scene.planar)
+        self._flow = self._velocity
         if p:
             self._flow = velocity_kernel(BLOBS[scene.blob], False, angular=False)
         # Error norms measure lengths against the longest rod and angles in radians.
@@ -49,35 +75,48 @@ class RodSystem:
 
     def rate(self, t: float, base: State, y: np.ndarray, out: np.ndarray) -> np.ndarray:
         """Write dy/dt at increments ``y`` from ``base`` at time ``t`` into ``out``, return it."""
-        return self.to_increments(y, self.velocities(t, base, y, out))
-
-    def to_increments(self, y: np.ndarray, velocities: np.ndarray) -> np.ndarray:
-        """Turn velocities at increments ``y`` into dy/dt, in place: w becomes d theta/dt."""
-        rotation_vector_rate(self.split(y)[1], self.split(velocities)[1])
-        return velocities
+        self.velocities(t, base, y, out)
+        to_increments(y[: self.rod_size], out[: self.rod_size])
+        return out
 
     def velocities(self, t: float, base: State, y: np.ndarray, out: np.ndarray) -> np.ndarray:
         """Write (u, w, u at the tracers) at increments ``y`` from ``base`` into ``out``.
 
         This is dy/dt of a step that starts there.
         """
-        start = perf_counter()
-        shift, theta, drift = self.split(y)
-        np.add(base.position, shift, out=self._position)
-        rotate(theta, base.director, self._director)
-        loads = self._point_loads(t, self._position, self._director)
-        middle = perf_counter()
-        rates = out[: self.rod_size].reshape(self._shape)
-        fluid = self.scene.epsilon, self.scene.viscosity
-        self._velocity(self._position, self._position, loads, *fluid, rates)
-        if drift.size:
-            np.add(base.tracer, drift, out=self._tracer)
-            flow = out[self.rod_size :].reshape(3, -1)
-            self._flow(self._tracer, self._position, loads, *fluid, flow)
-        self.evaluations += 1
-        self.elastic_seconds += middle - start
-        self.sum_seconds += perf_counter() - middle
+        with self.counted(1):
+            evaluate(*self.arguments(base), self.scene.strain_twist(t), y, out)
         return out
+
+    def arguments(self, base: State) -> tuple:
+        """Return what ``evaluate``, and every compiled loop over it, takes before omega."""
+        scene = self.scene
+        fluid = scene.epsilon, scene.viscosity
+        state = base.position, base.director, base.tracer
+        return self._velocity, self._flow, scene.rods.tables, fluid, state, self._work
+
+    @contextmanager
+    def counted(self, evaluations: int):
+        """Count evaluations and their time."""
+        start = perf_counter()
+        yield
+        self.seconds += perf_counter() - start
+        self.evaluations += evaluations
+
+    def split_seconds(self) -> tuple[float, float]:
+        """Return the time of all evaluations, shared between the sums and all else.
+
+        What is not a sum is timed once, here, on the initial state: a clock inside the compiled
+        loops would cost more than it measures.
+        """
+        initial, samples = self.scene.initial, []
+        for _ in range(20):
+            start = perf_counter()
+            rotate(np.zeros(initial.position.shape), initial.director, self._work[1])
+            self._point_loads(initial)
+            samples.append(perf_counter() - start)
+        elastic = min(self.evaluations * float(np.median(samples)), self.seconds)
+        return self.seconds - elastic, elastic
 
     def state_at(self, base: State, time: float, y: np.ndarray) -> State:
         """Return the state with increments ``y`` from ``base``."""
@@ -99,18 +138,11 @@ class RodSystem:
         net_force sum_k g_k and net_torque sum_k (X_k x g_k + m_k): (3,).
         """
         scene, rods = self.scene, self.scene.rods
-        loads = self._point_loads(state.time, state.position, state.director)
+        X, loads = state.position, self._point_loads(state)
         rates = np.empty(self._shape)
-        self._velocity(state.position, state.position, loads, scene.epsilon, scene.viscosity, rates)
+        self._velocity(X, X, loads, scene.epsilon, scene.viscosity, rates)
         split, length = np.empty((4, len(rods.names))), np.empty(len(rods.names))
-        energies(
-            state.position,
-            state.director,
-            scene.strain_twist(state.time),
-            rods.tables,
-            split,
-            length,
-        )
+        energies(X, state.director, scene.strain_twist(state.time), rods.tables, split, length)
         observables = dict(zip(ENERGIES, split, strict=True))
         observables["power"] = np.add.reduceat((loads * rates).sum(axis=0), rods.first)
         observables["length"] = length
@@ -133,7 +165,8 @@ class RodSystem:
         }
         return fields, observables
 
-    def _point_loads(self, t, position, director):
-        omega = self.scene.strain_twist(t)
-        point_loads(position, director, omega, self.scene.rods.tables, self._internal, self._loads)
-        return self._loads
+    def _point_loads(self, state):
+        internal, loads = self._work[3:]
+        omega = self.scene.strain_twist(state.time)
+        point_loads(state.position, state.director, omega, self.scene.rods.tables, internal, loads)
+        return loads

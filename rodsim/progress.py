@@ -50,12 +50,13 @@ class Lines(Silent):
     """A line every few seconds, for logs and job schedulers."""
 
     def __init__(self, label):
-        self._label, self._start = label, monotonic()
-        self._next = self._start + SECONDS_BETWEEN_LINES
+        self._label, self._start = label, None
 
     def update(self, fraction, note=""):
         """Print a line if the last one is long enough ago."""
         now = monotonic()
+        if self._start is None:
+            self._start, self._next = now, now + SECONDS_BETWEEN_LINES
         if now < self._next or fraction <= 0.0:
             return
         self._next = now + SECONDS_BETWEEN_LINES

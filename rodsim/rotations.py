@@ -1,4 +1,4 @@
-"""Rotations of all triads at once, and the rate of their rotation vectors.
+"""Motions of all points and triads at once, and the rate of their rotation vectors.
 
 theta (3, N) is a rotation vector: axis times angle, in the laboratory frame. A step of any
 integrator is an increment (X - X_n, theta); the triads at its end are exp(theta x) D_n.
@@ -40,6 +40,14 @@ def _turn(a, b, tx, ty, tz, D, k, out):
         out[i, 0, k] = dx + a * cx + b * (ty * cz - tz * cy)
         out[i, 1, k] = dy + a * cy + b * (tz * cx - tx * cz)
         out[i, 2, k] = dz + a * cz + b * (tx * cy - ty * cx)
+
+
+@kernel(f"void({MAT}, {MAT}, {MAT})")
+def add(position, shift, out):
+    """out = position + shift, all (3, N): the translations that go with the rotations below."""
+    for c in range(3):
+        for k in range(np.uint64(position.shape[1])):
+            out[c, k] = position[c, k] + shift[c, k]
 
 
 @kernel(f"void({MAT}, {TRIADS}, {TRIADS})")

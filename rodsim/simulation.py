@@ -14,8 +14,12 @@ from rodsim.rods import build_scene
 
 @dataclass
 class Summary:
-    """How a run ended and what it cost: ``runtime`` is the file's ``/runtime``."""
+    """How a run ended and what it cost: ``runtime`` is the file's ``/runtime``.
 
+    ``compile_seconds`` : what was spent on compiling before the run, counted with the rest of it.
+    """
+
+    compile_seconds: float = 0.0
     status: str = "running"
     frames: int = 0
     moved: str | None = None
@@ -52,8 +56,8 @@ def simulate(
     FileError : the output cannot be written.
     DivergedError : the run stopped; the frames before that are in the file, its status is set.
     """
-    started = perf_counter()
     summary = summary or Summary()
+    started = perf_counter() - summary.compile_seconds
     scene = build_scene(case)
     machine, compile_seconds = _compile(case, scene, force)
     with machine.threads(threads):
@@ -61,7 +65,8 @@ def simulate(
             notify(str(problem))
         with create_writer(case, scene, output, overwrite) as writer:
             summary.moved = str(writer.renamed_to) if writer.renamed_to else None
-            recorder = Recorder(writer, machine.system, started, compile_seconds)
+            compiling = compile_seconds + summary.compile_seconds
+            recorder = Recorder(writer, machine.system, started, compiling)
             _record(machine, case.time.end, recorder, progress or Silent(), summary)
     return summary
 

@@ -10,11 +10,11 @@ from functools import lru_cache
 
 import numpy as np
 
-from rodsim.dynamics import RodSystem
+from rodsim.dynamics import RodSystem, evaluate, to_increments
 from rodsim.errors import StepFailure
 from rodsim.integrators.spectral import SpectralRadius
 from rodsim.integrators.step import Step
-from rodsim.jit import VEC, kernel
+from rodsim.jit import MAT, SYSTEM, TRIADS, VEC, inline, kernel
 from rodsim.rods.state import State
 
 DAMPING = 2.0 / 13.0
@@ -60,14 +60,38 @@ def coefficients(s: int):
     return table
 
 
-@kernel(f"void(float64, float64, float64, float64, {VEC}, {VEC}, {VEC}, {VEC})")
-def combine(mu, nu, h_mu_tilde, h_gamma_tilde, y, oldest, f, f0):
+@inline
+def _combine(mu, nu, mu_tilde, gamma_tilde, y, oldest, f, f0):
     """Y_j = mu Y_(j-1) + nu Y_(j-2) + h mu~ F_(j-1) + h gamma~ F_0, written over Y_(j-2).
 
     On increments Y_0 = 0, so the term (1 - mu - nu) Y_0 of the method is absent.
     """
-    for i in range(y.size):
-        oldest[i] = mu * y[i] + nu * oldest[i] + h_mu_tilde * f[i] + h_gamma_tilde * f0[i]
+    for i in range(np.uint64(y.size)):
+        oldest[i] = mu * y[i] + nu * oldest[i] + mu_tilde * f[i] + gamma_tilde * f0[i]
+
+
+@kernel(f"void({SYSTEM}, {TRIADS}, {MAT}, int64, int64, float64, {VEC}, {MAT}, {VEC})")
+def run_stages(velocity, flow, rods, fluid, base, work, omegas, table, begin, end, size, f0, Y, f):
+    """Stages begin <= j < end of a step; Y (2, n) holds Y_j in row j % 2.
+
+    omegas: strain twist of each of these stages, or of one that stands for all.
+    """
+    for j in range(begin, end):
+        y, oldest = Y[(j - 1) % 2], Y[j % 2]
+        omega = omegas[j - begin if omegas.shape[0] > 1 else 0]
+        evaluate(velocity, flow, rods, fluid, base, work, omega, y, f)
+        to_increments(y[: 6 * base[0].shape[1]], f[: 6 * base[0].shape[1]])
+        mu, nu, mu_tilde, gamma_tilde = table[j, 0], table[j, 1], table[j, 2], table[j, 3]
+        _combine(mu, nu, size * mu_tilde, size * gamma_tilde, y, oldest, f, f0)
+
+
+@kernel(f"float64(float64, {VEC}, {VEC}, {VEC}, {VEC}, int64)")
+def error_norm(size, y, f0, f1, weights, n):
+    """Root mean square of 0.8 (y_n - y_(n+1)) + 0.4 h (f_n + f_(n+1)), weighted, first n parts."""
+    total = 0.0
+    for i in range(np.uint64(n)):
+        total += ((0.4 * size * (f0[i] + f1[i]) - 0.8 * y[i]) * weights[i]) ** 2
+    return math.sqrt(total / n)
 
 
 class RKC:
@@ -108,15 +132,27 @@ class RKC:
         s = stages_for(size, self.spectral_radius)
         self.max_stages = max(self.max_stages, s)
         table, system = coefficients(s), self.system
-        oldest, y, f = system.zeros(), size * table[1, 2] * f0, system.zeros()
-        for j in range(2, s + 1):
-            mu, nu, mu_tilde, gamma_tilde, _ = table[j]
-            system.rate(state.time + table[j - 1, 4] * size, state, y, f)
-            combine(mu, nu, size * mu_tilde, size * gamma_tilde, y, oldest, f, f0)
-            oldest, y = y, oldest
+        Y, f = np.zeros((2, system.size)), system.zeros()
+        Y[1] = size * table[1, 2] * f0
+        self._run_stages(state, table, size, f0, Y, f)
+        y = Y[s % 2]
         velocities = system.velocities(state.time + size, state, y, f)
-        f1 = system.to_increments(y, velocities.copy())
-        return y, f1, velocities, self._error(size, y, f0, f1)
+        f1, n = velocities.copy(), system.rod_size
+        to_increments(y[:n], f1[:n])
+        error = error_norm(size, y, f0, f1, system.weights, n) / self.tolerance
+        return y, f1, velocities, error
+
+    def _run_stages(self, state, table, size, f0, Y, f):
+        """Run stages 2 to s in compiled loops, as many at once as there is strain twist for."""
+        system, s = self.system, len(table) - 1
+        times = state.time + size * table[:, 4]
+        begin = 2
+        while begin <= s:
+            omegas = system.scene.strain_twist.at(times[begin - 1 : s])
+            end = begin + len(omegas) if system.scene.strain_twist.driven else s + 1
+            with system.counted(end - begin):
+                run_stages(*system.arguments(state), omegas, table, begin, end, size, f0, Y, f)
+            begin = end
 
     def _accepted(self, state, f0, end):
         """Try sizes until one is accepted; return it with what ``attempt`` made of it."""
@@ -133,14 +169,6 @@ class RKC:
             if not self._size > 1e-13 * end:
                 raise StepFailure(f"no step is accepted, down to a size of {self._size:.2g}", state)
             self._estimate_radius(state, f0)
-
-    def _error(self, size, y, f0, f1):
-        """Return the local error 0.8 (y_n - y_(n+1)) + 0.4 h (f_n + f_(n+1)) over the tolerance."""
-        n = self.system.rod_size
-        estimate = 0.4 * size * (f0[:n] + f1[:n]) - 0.8 * y[:n]
-        with np.errstate(all="ignore"):
-            norm = np.sqrt(np.mean(np.square(estimate * self.system.weights[:n])))
-        return float(norm) / self.tolerance
 
     def _grow(self, size, error):
         """Choose the next size from the last two errors, within [0.1, 10] of this one."""

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+LARGEST_BLOCK = 1_000_000  # numbers of strain twist evaluated ahead
+
 
 @dataclass
 class State:
@@ -110,6 +112,16 @@ class StrainTwist:
     def driven(self) -> bool:
         """True if any entry depends on time."""
         return bool(self._driven)
+
+    def at(self, times: np.ndarray) -> np.ndarray:
+        """Return Omega (T, 3, N) at the first T of several times; T = 1, for all, if not driven.
+
+        T is cut where the array would be large: a long step of a large scene takes several calls.
+        """
+        if not self.driven:
+            return self._values[None]
+        most = max(1, LARGEST_BLOCK // self._values.size)
+        return np.array([self(t) for t in times[:most]])
 
     def __call__(self, t: float) -> np.ndarray:
         """Return Omega (3, N), 1/length, at time t; valid until the next call."""

@@ -1,0 +1,51 @@
+"""Compiles the kernels of a scene ahead of its run, in a process of its own.
+
+Code that Numba has just compiled and the same code read from its cache can differ in the last bit
+of a sum (the parallel part is optimised once more when it is linked). A run must not depend on
+whether it was the first, so the command never runs what it compiles: it reads it from the cache.
+"""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from time import perf_counter
+
+
+def ensure_compiled(case, say) -> float:
+    """Compile what ``case`` needs if this installation has not yet; return the seconds it took.
+
+    Call after ``settings.prepare``. ``say`` is called with a line for the user before the wait.
+    """
+    if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
+        return 0.0
+    variant = (case.fluid.blob, str(int(case.plane is not None)), str(int(bool(case.tracers))))
+    marker = Path(os.environ["NUMBA_CACHE_DIR"]) / f"compiled-{'-'.join(variant)}"
+    if marker.exists():
+        return 0.0
+    say("compiling for this kind of scene, once; some seconds")
+    start = perf_counter()
+    done = subprocess.run(
+        [sys.executable, "-m", "rodsim.warmup", *variant], capture_output=True, check=False
+    )
+    if done.returncode == 0:
+        marker.parent.mkdir(parents=True, exist_ok=True)
+        marker.touch()
+    return perf_counter() - start
+
+
+def main(blob: str, planar: str, tracers: str) -> None:
+    """Fill the cache with the kernels of one kind of scene."""
+    from rodsim.settings import prepare
+
+    prepare()
+    import rodsim.machine  # noqa: F401  (importing it compiles everything but the sums)
+    from rodsim.fluid import BLOBS, velocity_kernel
+
+    velocity_kernel(BLOBS[blob], planar == "1")
+    if tracers == "1":
+        velocity_kernel(BLOBS[blob], False, angular=False)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
