@@ -3,8 +3,13 @@
 import sys
 from pathlib import Path
 
-import numba
 import pytest
+
+from rodsim.settings import prepare
+
+prepare()  # threads and cache as the command has them; before Numba is imported
+
+import numba  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parent))
 
