@@ -82,7 +82,7 @@ class Timed:
 
     def __init__(self, call, sample_seconds=1e-2):
         self.call = call
-        call()
+        call()  # compiles
         begin = perf_counter()
         call()
         self.calls = max(1, round(sample_seconds / (perf_counter() - begin)))

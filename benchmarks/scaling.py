@@ -1,17 +1,20 @@
 """Cost of one evaluation, and memory, against the number of points."""
 
+import functools
 import time
 import tracemalloc
 
 import click
 from common import (
     CONFIGS,
+    Timed,
     benchmark,
     curve,
     interleaved,
     thread_counts,
     threads_option,
 )
+from pieces import elasticity_of, sum_of
 from tables import Spread, Table
 
 SIZES = (50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000, 50_000, 100_000)
@@ -19,11 +22,10 @@ QUICK_LARGEST = 5000
 COLUMNS = {
     "points": "M",
     "threads": "threads",
-    "elastic": "elasticity, ms",
-    "sum": "sum, ms",
-    "other": "all else, ms",
+    "elastic": "elasticity alone, ms",
+    "sum": "sum alone, ms",
+    "whole": "evaluation, ms",
     "pair": "sum, ns/pair",
-    "share": "share of the sum",
     "repeats": "repeats",
     "build": "case and scene, ms",
     "memory": "memory, kB",
@@ -35,7 +37,7 @@ COLUMNS = {
 @benchmark(full=15, short=5)
 @threads_option
 @click.option("--points", multiple=True, type=click.IntRange(8), help="M; again for more sizes.")
-@click.option("--budget", type=click.FloatRange(0, min_open=True), default=30.0, show_default=True,
+@click.option("--budget", type=click.FloatRange(0, min_open=True), default=90.0, show_default=True,
               help="Seconds that one size may take; what needs more is skipped.")  # fmt: skip
 def main(quick, repeats, threads, points, budget):
     """Measure one evaluation of a ring of M points: elasticity, sum, and the memory it needs.
@@ -48,7 +50,7 @@ def main(quick, repeats, threads, points, budget):
     counts = thread_counts(threads)
     rows, pair_seconds = [], 0.0
     for size in sorted(points) or [size for size in SIZES if size <= largest]:
-        foreseen = pair_seconds * size**2 * len(counts)
+        foreseen = 2 * pair_seconds * size**2 * len(counts)  # the sum, and the whole
         fit = repeats if foreseen == 0.0 else min(repeats, int(budget / foreseen) - 1)
         if foreseen > budget:
             rows.append({"points": size, "note": f"skipped: about {foreseen:.0f} s"})
@@ -67,7 +69,6 @@ def measure(size, counts, repeats):
     rows = []
     for count, parts in results.items():
         elastic, total, wall = zip(*parts, strict=True)
-        both = zip(elastic, total, wall, strict=True)
         spent = evaluations[count]
         rows.append(
             {
@@ -75,9 +76,8 @@ def measure(size, counts, repeats):
                 "threads": count,
                 "elastic": Spread.of(elastic, 1e3),
                 "sum": Spread.of(total, 1e3),
-                "other": Spread.of([w - e - s for e, s, w in both], 1e3),
+                "whole": Spread.of(wall, 1e3),
                 "pair": Spread.of(total, 1e9 / size**2),
-                "share": Spread.of([s / w for s, w in zip(total, wall, strict=True)]),
                 "repeats": repeats,
                 "build": 1e3 * spent.build_seconds,
                 "memory": spent.memory / 1024,
@@ -88,10 +88,12 @@ def measure(size, counts, repeats):
 
 
 class Evaluation:
-    """Call it for (elasticity, sum, wall) seconds of one evaluation; small ones are averaged."""
+    """Call it for (elasticity, sum, wall) seconds of one evaluation, each timed alone."""
 
     def __init__(self, size, threads):
-        self.size, self.threads = size, threads
+        import numba
+
+        self.size = size
         self._build()  # imports and compiles
         tracemalloc.start()
         self._build()
@@ -100,9 +102,17 @@ class Evaluation:
         begin = time.perf_counter()
         self._build()
         self.build_seconds = time.perf_counter() - begin
-        self.calls = max(1, int(1e7 / size**2))
-        if size <= 10_000:  # warm up; at larger sizes it would not show
-            self()
+        scene, system, state = self.system.scene, self.system, self.system.scene.initial
+
+        def whole():
+            numba.set_num_threads(threads)
+            system.rate(0.0, state, self.increments, self.rates)
+
+        pieces = elasticity_of(scene), sum_of(scene, threads), whole
+        self.pieces = [self._timed(piece) for piece in pieces]
+
+    def _timed(self, piece):
+        return Timed(piece) if self.size <= 10_000 else functools.partial(_once, piece)
 
     def _build(self):
         from rodsim.case import load_case
@@ -115,17 +125,14 @@ class Evaluation:
         self.increments, self.rates = self.system.zeros(), self.system.zeros()
 
     def __call__(self):
-        import numba
+        return [piece() for piece in self.pieces]
 
-        system, state = self.system, self.system.scene.initial
-        numba.set_num_threads(self.threads)
-        elastic, total = system.elastic_seconds, system.sum_seconds
-        begin = time.perf_counter()
-        for _ in range(self.calls):
-            system.rate(0.0, state, self.increments, self.rates)
-        wall = time.perf_counter() - begin
-        elastic, total = system.elastic_seconds - elastic, system.sum_seconds - total
-        return elastic / self.calls, total / self.calls, wall / self.calls
+
+def _once(call):
+    """Seconds of one call without warming up, which would not show at large sizes."""
+    begin = time.perf_counter()
+    call()
+    return time.perf_counter() - begin
 
 
 def draw(rows, left, right):

@@ -1,0 +1,38 @@
+"""The pieces of an evaluation, each alone: in a run they are one compiled loop without a clock."""
+
+import numpy as np
+
+
+def sum_of(scene, threads):
+    """Return a function that evaluates the sums over a scene's rods once."""
+    import numba
+
+    from rodsim.fluid import BLOBS, velocity_kernel
+
+    kernel = velocity_kernel(BLOBS[scene.blob], scene.planar)
+    position = scene.initial.position
+    loads = np.random.default_rng(1).standard_normal((6, scene.rods.points))
+    out = np.empty_like(loads)
+
+    def evaluate():
+        numba.set_num_threads(threads)
+        kernel(position, position, loads, scene.epsilon, scene.viscosity, out)
+
+    return evaluate
+
+
+def elasticity_of(scene):
+    """Return a function that turns a scene's triads and computes its point loads once."""
+    from rodsim.elasticity import point_loads
+    from rodsim.rotations import rotate
+
+    state = scene.initial
+    theta, director = np.zeros_like(state.position), np.empty_like(state.director)
+    internal, loads = np.empty((2, 6, scene.rods.points))
+
+    def evaluate():
+        rotate(theta, state.director, director)
+        omega = scene.strain_twist(0.0)
+        point_loads(state.position, director, omega, scene.rods.tables, internal, loads)
+
+    return evaluate
