@@ -5,44 +5,17 @@ A step of any integrator runs on the increments y from the state at its start: a
 exp(theta x) D_n, so they stay orthonormal whatever the integrator does with theta.
 """
 
-from contextlib import contextmanager
 from time import perf_counter
 
 import numpy as np
 
 from rodsim.elasticity import ENERGIES, energies, first_half_turn, point_loads
 from rodsim.fluid import BLOBS, velocity_kernel
-from rodsim.jit import MAT, SYSTEM, VEC, kernel
 from rodsim.rods.state import Scene, State
-from rodsim.rotations import add, rotate, rotation_vector_rate
+from rodsim.rotations import rotate
+from rodsim.stages import stage_loop, to_increments
 
-
-@kernel(f"void({SYSTEM}, {MAT}, {VEC}, {VEC})")
-def evaluate(velocity, flow, rods, fluid, base, work, omega, y, out):
-    """Write (u, w, u at the tracers) at increments ``y`` from the state ``base`` into ``out``.
-
-    velocity, flow: the sums for rods and tracers; fluid: epsilon, viscosity; omega (3, N).
-    """
-    position, director, tracer, internal, loads = work
-    n = position.shape[1]
-    add(base[0], y[: 3 * n].reshape(3, n), position)
-    rotate(y[3 * n : 6 * n].reshape(3, n), base[1], director)
-    point_loads(position, director, omega, rods, internal, loads)
-    velocity(position, position, loads, fluid[0], fluid[1], out[: 6 * n].reshape(6, n))
-    markers = tracer.shape[1]
-    if markers > 0:
-        add(base[2], y[6 * n :].reshape(3, markers), tracer)
-        flow(tracer, position, loads, fluid[0], fluid[1], out[6 * n :].reshape(3, markers))
-
-
-@kernel(f"void({VEC}, {VEC})")
-def to_increments(y, velocities):
-    """Turn velocities at increments ``y`` into dy/dt, in place: w becomes d theta/dt.
-
-    Tracers come after the rods' 6 N numbers; their part must have been cut off both vectors.
-    """
-    n = y.size // 6
-    rotation_vector_rate(y[3 * n :].reshape(3, n), velocities[3 * n :].reshape(3, n))
+NO_STAGES, NOTHING = np.zeros((1, 4)), np.zeros(0)
 
 
 class RodSystem:
@@ -57,9 +30,7 @@ class RodSystem:
         self._shape = (6, n)
         self._work = np.empty((3, n)), np.empty((3, 3, n)), np.empty((3, p)), *np.empty((2, 6, n))
         self._velocity = velocity_kernel(BLOBS[scene.blob], scene.planar)
-        self._flow = self._velocity
-        if p:
-            self._flow = velocity_kernel(BLOBS[scene.blob], False, angular=False)
+        self._loop = stage_loop(BLOBS[scene.blob], scene.planar, p > 0)
         # Error norms measure lengths against the longest rod and angles in radians.
         self.weights = np.ones(self.size)
         self.weights[: 3 * n] = self.weights[6 * n :] = 1.0 / scene.length_scale
@@ -84,24 +55,28 @@ class RodSystem:
 
         This is dy/dt of a step that starts there.
         """
-        with self.counted(1):
-            evaluate(*self.arguments(base), self.scene.strain_twist(t), y, out)
+        self.run_stages(t, base, y, out)
         return out
 
-    def arguments(self, base: State) -> tuple:
-        """Return what ``evaluate``, and every compiled loop over it, takes before omega."""
-        scene = self.scene
-        fluid = scene.epsilon, scene.viscosity
-        state = base.position, base.director, base.tracer
-        return self._velocity, self._flow, scene.rods.tables, fluid, state, self._work
+    def run_stages(self, t, base, Y, out, table=NO_STAGES, begin=1, end=1, size=0.0, f0=NOTHING):
+        """Run stages of a recurrence, see :func:`rodsim.stages.stage_loop`, then evaluate.
 
-    @contextmanager
-    def counted(self, evaluations: int):
-        """Count evaluations and their time."""
+        ``t``: the times of the evaluations, or one time. Returns how many were made: of a driven
+        scene, as many as there is room for strain twist, the last of them without its stage.
+        """
+        omegas = self.scene.strain_twist.at(np.atleast_1d(t))
+        if self.scene.strain_twist.driven:
+            end = begin + len(omegas) - 1
+        scene, Y = self.scene, Y.reshape(-1, self.size)
+        state = base.position, base.director, base.tracer
+        fluid = scene.epsilon, scene.viscosity
         start = perf_counter()
-        yield
+        self._loop(
+            scene.rods.tables, fluid, state, self._work, omegas, table, begin, end, size, f0, Y, out
+        )
         self.seconds += perf_counter() - start
-        self.evaluations += evaluations
+        self.evaluations += end + 1 - begin
+        return end + 1 - begin
 
     def split_seconds(self) -> tuple[float, float]:
         """Return the time of all evaluations, shared between the sums and all else.

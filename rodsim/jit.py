@@ -22,8 +22,7 @@ BOOLS = "boolean[::1]"
 RODS = f"Tuple(({INTS}, {INTS}, {BOOLS}, {VEC}, {MAT}))"  # rods.state.Rods.tables
 BASE = f"Tuple(({MAT}, {TRIADS}, {MAT}))"  # position, director, tracer of a state
 WORK = f"Tuple(({MAT}, {TRIADS}, {MAT}, {MAT}, {MAT}))"  # the same, internal, loads
-SUM = f"FunctionType(void({MAT}, {MAT}, {MAT}, float64, float64, {MAT}))"  # fluid/sums.py
-SYSTEM = f"{SUM}, {SUM}, {RODS}, UniTuple(float64, 2), {BASE}, {WORK}"  # dynamics.evaluate
+SYSTEM = f"{RODS}, UniTuple(float64, 2), {BASE}, {WORK}"  # RodSystem.arguments
 ONE = np.uint64(1)
 
 SUM_FLAGS = frozenset({"reassoc", "contract", "arcp", "nsz"})

@@ -39,12 +39,15 @@ def main(blob: str, planar: str, tracers: str) -> None:
     from rodsim.settings import prepare
 
     prepare()
+    import numpy as np
+
     import rodsim.machine  # noqa: F401  (importing it compiles everything but the sums)
     from rodsim.fluid import BLOBS, velocity_kernel
+    from rodsim.stages import stage_loop
 
-    velocity_kernel(BLOBS[blob], planar == "1")
-    if tracers == "1":
-        velocity_kernel(BLOBS[blob], False, angular=False)
+    stage_loop(BLOBS[blob], planar == "1", tracers == "1")
+    points, loads, out = np.zeros((3, 2)), np.zeros((6, 2)), np.zeros((6, 2))
+    velocity_kernel(BLOBS[blob], planar == "1")(points, points, loads, 1.0, 1.0, out)
 
 
 if __name__ == "__main__":

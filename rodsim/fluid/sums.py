@@ -7,8 +7,11 @@ With r = x - X_k, point force g_k and point torque m_k on the fluid,
     p(x) =      sum_k (g.r) Q                                                       (62)
 
 Threads share out the targets; the sum over sources is serial in each, so the result does not
-depend on the number of threads. One source of each formula: ``velocity_kernel`` specialises it at
-compile time for the blob, for a planar scene and for targets that do not need w.
+depend on the number of threads. One source of each formula, specialised at compile time for the
+blob, for a planar scene and for targets that do not need w; what a scene does not use is never
+compiled. The kernels below take (targets, sources, loads, epsilon, viscosity, out): targets (3, T),
+sources (3, N), loads (6, N) with g in rows 0-2 and m in rows 3-5; out (6, T): u in rows 0-2, w in
+rows 3-5, or (3, T) without w; all C-contiguous.
 """
 
 import math
@@ -16,27 +19,16 @@ from functools import lru_cache
 
 from numba import prange
 
-from rodsim.fluid.blobs import dipole_scalars, stokeslet_scalars
-from rodsim.jit import MAT, VEC, parallel_kernel
+from rodsim.fluid.blobs import ALGEBRAIC7, ALGEBRAIC9, dipole_scalars, stokeslet_scalars
+from rodsim.jit import parallel_kernel
 
 EIGHT_PI = 8.0 * math.pi
-VELOCITY_SIGNATURE = f"void({MAT}, {MAT}, {MAT}, float64, float64, {MAT})"
-PRESSURE_SIGNATURE = f"void({MAT}, {MAT}, {MAT}, float64, {VEC})"
-
-
-@lru_cache
-def velocity_kernel(blob, planar=False, angular=True):
-    """Compile ``kernel(targets, sources, loads, epsilon, viscosity, out)``.
-
-    targets (3, T), sources (3, N), loads (6, N): g in rows 0-2, m in rows 3-5; out (6, T): u in
-    rows 0-2, w in rows 3-5, or (3, T) without ``angular``. ``planar``: everything lies in a plane
-    of constant x, g_x = m_y = m_z = 0; only u_y, u_z, w_x are computed, the other rows set to 0.
-    """
-    return _planar_kernel(blob, angular) if planar else _spatial_kernel(blob, angular)
 
 
 def _spatial_kernel(blob, angular):
-    @parallel_kernel(VELOCITY_SIGNATURE)
+    """Make the sum for any scene, with or without w."""
+
+    @parallel_kernel
     def spatial_sum(targets, sources, loads, epsilon, viscosity, out):
         e2 = epsilon * epsilon
         scale = 1.0 / (EIGHT_PI * viscosity)
@@ -69,7 +61,9 @@ def _spatial_kernel(blob, angular):
 
 
 def _planar_kernel(blob, angular):
-    @parallel_kernel(VELOCITY_SIGNATURE)
+    """Make the sum for a plane of constant x, g_x = m_y = m_z = 0: only u_y, u_z, w_x are not 0."""
+
+    @parallel_kernel
     def planar_sum(targets, sources, loads, epsilon, viscosity, out):
         e2 = epsilon * epsilon
         scale = 1.0 / (EIGHT_PI * viscosity)
@@ -95,11 +89,26 @@ def _planar_kernel(blob, angular):
     return planar_sum
 
 
+# Globals, so that compiled functions may call them and still be read from Numba's cache.
+SPATIAL_7, SPATIAL_9 = (_spatial_kernel(blob, True) for blob in (ALGEBRAIC7, ALGEBRAIC9))
+PLANAR_7, PLANAR_9 = (_planar_kernel(blob, True) for blob in (ALGEBRAIC7, ALGEBRAIC9))
+FLOW_7, FLOW_9 = (_spatial_kernel(blob, False) for blob in (ALGEBRAIC7, ALGEBRAIC9))
+
+
+def velocity_kernel(blob, planar=False, angular=True):
+    """Return the kernel for a blob: of a planar scene, or for targets that do not need w."""
+    if not angular:
+        return FLOW_7 if blob == ALGEBRAIC7 else FLOW_9
+    if planar:
+        return PLANAR_7 if blob == ALGEBRAIC7 else PLANAR_9
+    return SPATIAL_7 if blob == ALGEBRAIC7 else SPATIAL_9
+
+
 @lru_cache
 def pressure_kernel(blob):
     """Compile ``kernel(targets, sources, loads, epsilon, out)`` with out (T,), eq. (62)."""
 
-    @parallel_kernel(PRESSURE_SIGNATURE)
+    @parallel_kernel
     def pressure_sum(targets, sources, loads, epsilon, out):
         e2 = epsilon * epsilon
         for i in prange(targets.shape[1]):

@@ -10,12 +10,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from rodsim.dynamics import RodSystem, evaluate, to_increments
+from rodsim.dynamics import RodSystem
 from rodsim.errors import StepFailure
 from rodsim.integrators.spectral import SpectralRadius
 from rodsim.integrators.step import Step
-from rodsim.jit import MAT, SYSTEM, TRIADS, VEC, inline, kernel
+from rodsim.jit import VEC, kernel
 from rodsim.rods.state import State
+from rodsim.stages import to_increments
 
 DAMPING = 2.0 / 13.0
 SAFETY = 0.8
@@ -58,31 +59,6 @@ def coefficients(s: int):
     table[1, 4] = table[2, 4] / t1[2]
     table[s, 4] = 1.0
     return table
-
-
-@inline
-def _combine(mu, nu, mu_tilde, gamma_tilde, y, oldest, f, f0):
-    """Y_j = mu Y_(j-1) + nu Y_(j-2) + h mu~ F_(j-1) + h gamma~ F_0, written over Y_(j-2).
-
-    On increments Y_0 = 0, so the term (1 - mu - nu) Y_0 of the method is absent.
-    """
-    for i in range(np.uint64(y.size)):
-        oldest[i] = mu * y[i] + nu * oldest[i] + mu_tilde * f[i] + gamma_tilde * f0[i]
-
-
-@kernel(f"void({SYSTEM}, {TRIADS}, {MAT}, int64, int64, float64, {VEC}, {MAT}, {VEC})")
-def run_stages(velocity, flow, rods, fluid, base, work, omegas, table, begin, end, size, f0, Y, f):
-    """Stages begin <= j < end of a step; Y (2, n) holds Y_j in row j % 2.
-
-    omegas: strain twist of each of these stages, or of one that stands for all.
-    """
-    for j in range(begin, end):
-        y, oldest = Y[(j - 1) % 2], Y[j % 2]
-        omega = omegas[j - begin if omegas.shape[0] > 1 else 0]
-        evaluate(velocity, flow, rods, fluid, base, work, omega, y, f)
-        to_increments(y[: 6 * base[0].shape[1]], f[: 6 * base[0].shape[1]])
-        mu, nu, mu_tilde, gamma_tilde = table[j, 0], table[j, 1], table[j, 2], table[j, 3]
-        _combine(mu, nu, size * mu_tilde, size * gamma_tilde, y, oldest, f, f0)
 
 
 @kernel(f"float64(float64, {VEC}, {VEC}, {VEC}, {VEC}, int64)")
@@ -131,28 +107,22 @@ class RKC:
         """Return (increment, rate at its end, velocities at its end, scaled error) of a trial."""
         s = stages_for(size, self.spectral_radius)
         self.max_stages = max(self.max_stages, s)
-        table, system = coefficients(s), self.system
+        system, n = self.system, self.system.rod_size
+        y, velocities = self._run_stages(state, coefficients(s), size, f0)
+        f1 = velocities.copy()
+        to_increments(y[:n], f1[:n])
+        return y, f1, velocities, error_norm(size, y, f0, f1, system.weights, n) / self.tolerance
+
+    def _run_stages(self, state, table, size, f0):
+        """Return the increment of a step and the velocities at its end."""
+        system, s = self.system, len(table) - 1
         Y, f = np.zeros((2, system.size)), system.zeros()
         Y[1] = size * table[1, 2] * f0
-        self._run_stages(state, table, size, f0, Y, f)
-        y = Y[s % 2]
-        velocities = system.velocities(state.time + size, state, y, f)
-        f1, n = velocities.copy(), system.rod_size
-        to_increments(y[:n], f1[:n])
-        error = error_norm(size, y, f0, f1, system.weights, n) / self.tolerance
-        return y, f1, velocities, error
-
-    def _run_stages(self, state, table, size, f0, Y, f):
-        """Run stages 2 to s in compiled loops, as many at once as there is strain twist for."""
-        system, s = self.system, len(table) - 1
-        times = state.time + size * table[:, 4]
-        begin = 2
-        while begin <= s:
-            omegas = system.scene.strain_twist.at(times[begin - 1 : s])
-            end = begin + len(omegas) if system.scene.strain_twist.driven else s + 1
-            with system.counted(end - begin):
-                run_stages(*system.arguments(state), omegas, table, begin, end, size, f0, Y, f)
-            begin = end
+        times, begin = state.time + size * table[1:, 4], 2
+        while begin <= s:  # more than once only where the strain twist comes in blocks
+            args = table, begin, s + 1, size, f0
+            begin += system.run_stages(times[begin - 2 :], state, Y, f, *args) - 1
+        return Y[s % 2], f
 
     def _accepted(self, state, f0, end):
         """Try sizes until one is accepted; return it with what ``attempt`` made of it."""

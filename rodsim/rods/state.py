@@ -120,8 +120,8 @@ class StrainTwist:
         """
         if not self.driven:
             return self._values[None]
-        most = max(1, LARGEST_BLOCK // self._values.size)
-        return np.array([self(t) for t in times[:most]])
+        most = max(2, LARGEST_BLOCK // self._values.size)
+        return np.array([self(t).copy() for t in times[:most]])
 
     def __call__(self, t: float) -> np.ndarray:
         """Return Omega (3, N), 1/length, at time t; valid until the next call."""

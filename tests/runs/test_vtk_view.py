@@ -145,6 +145,9 @@ def test_a_killed_run_is_whole_up_to_its_last_frame(tmp_path, wait):
     seen = len(frames)
     assert abs(seen - committed) <= 1
     # a kill between a frame and its time leaves the last time out, which VTK takes for 0
-    assert view_times is None or view_times[: committed - 1] == times[: len(view_times[: committed - 1])]
+    assert (
+        view_times is None
+        or view_times[: committed - 1] == times[: len(view_times[: committed - 1])]
+    )
     np.testing.assert_array_equal(frames[-1]["points"], frame(seen - 1)[0]["position"].T)
     create(path).finish("stopped", {})  # the lock of the dead process is in nobody's way

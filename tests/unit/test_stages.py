@@ -1,0 +1,72 @@
+"""The compiled loop over stages against the method written out, one Python call per stage."""
+
+import numpy as np
+import pytest
+from scenes import system_of
+
+from rodsim.integrators.rkc import RKC, coefficients
+from rodsim.rods import state as state_module
+
+DRIVEN = "rods.ring.strain_twist=['1.2*cos(40000*t + s)', 0, '0.3*t*1e4']"
+SCENE = ("closed_ring_low_twist", "rods.ring.shape.points=14", "tracers.inner.along=4",
+         "tracers.outer.along=2", "tracers.outer.around=3")  # fmt: skip
+SIZE, STAGES = 3e-5, 7
+
+
+def written_out(system, state, f0, size, s):
+    """Y_j = (1 - mu - nu) Y_0 + mu Y_(j-1) + nu Y_(j-2) + h mu~ F_(j-1) + h gamma~ F_0."""
+    table, start = coefficients(s), system.zeros()
+    Y = [start, start + size * table[1, 2] * f0]
+    for j in range(2, s + 1):
+        mu, nu, mu_tilde, gamma_tilde, _ = table[j]
+        F = system.rate(state.time + table[j - 1, 4] * size, state, Y[j - 1], system.zeros())
+        Y.append(
+            (1 - mu - nu) * start + mu * Y[j - 1] + nu * Y[j - 2]
+            + size * (mu_tilde * F + gamma_tilde * f0)
+        )  # fmt: skip
+    return Y[s]
+
+
+def one_step(overrides):
+    _, system = system_of(*SCENE, *overrides)
+    integrator = RKC(system, 1e-4)
+    integrator.spectral_radius = (STAGES - 0.5) ** 2 / (1.54 * SIZE)
+    state = system.scene.initial
+    state.time = 1.3e-5
+    f0 = system.velocities(state.time, state, system.zeros(), system.zeros())
+    before = system.evaluations
+    y, f1, velocities, _ = integrator.attempt(state, f0, SIZE)
+    return system, state, f0, y, f1, velocities, system.evaluations - before
+
+
+@pytest.mark.parametrize("overrides", [(), (DRIVEN,), ("tracers=null",)])
+def test_stages_are_those_of_the_method(overrides):
+    system, state, f0, y, f1, velocities, evaluations = one_step(overrides)
+    assert evaluations == STAGES
+    expected = written_out(system, state, f0, SIZE, STAGES)
+    # The same numbers but for rounding, of which s stages make about s^2 units.
+    assert y == pytest.approx(expected, abs=1e-13 * abs(expected).max())
+    end = state.time + SIZE
+    size = abs(f1).max()
+    assert f1 == pytest.approx(system.rate(end, state, expected, system.zeros()), abs=1e-9 * size)
+    assert velocities == pytest.approx(
+        system.velocities(end, state, expected, system.zeros()), abs=1e-9 * size
+    )
+
+
+def test_strain_twist_in_blocks_gives_the_same_bits(monkeypatch):
+    whole = one_step((DRIVEN,))[3]
+    monkeypatch.setattr(state_module, "LARGEST_BLOCK", 3 * 3 * 14)
+    assert np.array_equal(one_step((DRIVEN,))[3], whole)
+
+
+def test_strain_twist_at_several_times_is_that_of_each():
+    _, system = system_of(*SCENE, DRIVEN)
+    strain_twist, times = system.scene.strain_twist, np.array([1e-5, 2e-5, 4e-5])
+    together = strain_twist.at(times)
+    assert together.shape == (3, 3, 14)
+    for omega, t in zip(together, times, strict=True):
+        assert np.array_equal(omega, strain_twist(t))
+    s = (np.arange(14) + 0.5) * 2 * np.pi * 2.5 / 14
+    assert together[1, 0] == pytest.approx(1.2 * np.cos(0.8 + s), rel=1e-13)
+    assert together[2, 2] == pytest.approx(0.12, rel=1e-13)
