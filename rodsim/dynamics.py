@@ -58,7 +58,9 @@ class RodSystem:
         self.run_stages(t, base, y, out)
         return out
 
-    def run_stages(self, t, base, Y, out, table=NO_STAGES, begin=1, end=1, size=0.0, f0=NOTHING):
+    def run_stages(
+        self, t, base, Y, out, table=NO_STAGES, begin=1, end=1, size=0.0, f0=NOTHING, g=NOTHING
+    ):
         """Run stages of a recurrence, see :func:`rodsim.stages.stage_loop`, then evaluate.
 
         ``t``: the times of the evaluations, or one time. Returns how many were made: of a driven
@@ -72,7 +74,19 @@ class RodSystem:
         fluid = scene.epsilon, scene.viscosity
         start = perf_counter()
         self._loop(
-            scene.rods.tables, fluid, state, self._work, omegas, table, begin, end, size, f0, Y, out
+            scene.rods.tables,
+            fluid,
+            state,
+            self._work,
+            omegas,
+            table,
+            begin,
+            end,
+            size,
+            f0,
+            g,
+            Y,
+            out,
         )
         self.seconds += perf_counter() - start
         self.evaluations += end + 1 - begin

@@ -22,20 +22,20 @@ def to_increments(y, velocities):
 
 
 @inline
-def _combine(row, size, y, oldest, f, f0):
-    """Y_j = mu Y_(j-1) + nu Y_(j-2) + h mu~ F_(j-1) + h gamma~ F_0, written over Y_(j-2)."""
+def _combine(row, size, y, oldest, f, f0, g):
+    """Y_j = mu Y_(j-1) + nu Y_(j-2) + h mu~ (F_(j-1) + g) + h gamma~ F_0, over Y_(j-2)."""
     mu, nu, mu_tilde, gamma_tilde = row[0], row[1], size * row[2], size * row[3]
     for i in range(np.uint64(y.size)):
-        oldest[i] = mu * y[i] + nu * oldest[i] + mu_tilde * f[i] + gamma_tilde * f0[i]
+        oldest[i] = mu * y[i] + nu * oldest[i] + mu_tilde * (f[i] + g[i]) + gamma_tilde * f0[i]
 
 
 @lru_cache
 def stage_loop(blob: int, planar: bool, tracers: bool):
-    """Compile ``run(rods, fluid, base, work, omegas, table, begin, end, size, f0, Y, f)``.
+    """Compile ``run(rods, fluid, base, work, omegas, table, begin, end, size, f0, g, Y, f)``.
 
     Runs the stages begin <= j < end of a three-term recurrence,
 
-        Y_j = mu_j Y_(j-1) + nu_j Y_(j-2) + h (mu~_j F_(j-1) + gamma~_j F_0),
+        Y_j = mu_j Y_(j-1) + nu_j Y_(j-2) + h (mu~_j (F_(j-1) + g) + gamma~_j F_0),
 
     with Y_j in row j % 2 of Y (2, n) and the four coefficients in row j of ``table``; then writes
     the velocities (u, w, u at the tracers) at Y_(end-1) into ``f``. Increments are those from the
@@ -44,8 +44,8 @@ def stage_loop(blob: int, planar: bool, tracers: bool):
     """
     seven = blob == ALGEBRAIC7
 
-    @kernel(f"void({SYSTEM}, {TRIADS}, {MAT}, int64, int64, float64, {VEC}, {MAT}, {VEC})")
-    def run(rods, fluid, base, work, omegas, table, begin, end, size, f0, Y, f):
+    @kernel(f"void({SYSTEM}, {TRIADS}, {MAT}, int64, int64, float64, {VEC}, {VEC}, {MAT}, {VEC})")
+    def run(rods, fluid, base, work, omegas, table, begin, end, size, f0, g, Y, f):
         position, director, tracer, internal, loads = work
         epsilon, viscosity = fluid
         n = position.shape[1]
@@ -75,6 +75,6 @@ def stage_loop(blob: int, planar: bool, tracers: bool):
                     FLOW_9(tracer, position, loads, epsilon, viscosity, flow)
             if j < end:
                 to_increments(y[: 6 * n], f[: 6 * n])
-                _combine(table[j], size, y, Y[j % 2], f, f0)
+                _combine(table[j], size, y, Y[j % 2], f, f0, g)
 
     return run
