@@ -5,6 +5,7 @@ import hashlib
 import os
 import platform
 import sys
+import tempfile
 from pathlib import Path
 
 import rodsim
@@ -17,7 +18,8 @@ def prepare() -> None:
     everything compiled code depends on: another version, source, Python or processor finds
     nothing stale there. Variables that the user has set are left alone.
     """
-    os.environ.setdefault("NUMBA_CACHE_DIR", str(cache_folder()))
+    if "NUMBA_CACHE_DIR" not in os.environ:
+        os.environ["NUMBA_CACHE_DIR"] = str(_writable(cache_folder()))
     if os.environ.get("NUMBA_THREADING_LAYER", "tbb") == "tbb":
         os.environ["NUMBA_THREADING_LAYER"] = "tbb" if _load_tbb() else "default"
     _let_llvm_vectorise()
@@ -40,6 +42,16 @@ def cache_folder() -> Path:
     """Return the folder for compiled code of exactly this installation on this processor."""
     home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     return Path(home) / "rodsim" / _fingerprint()
+
+
+def _writable(folder):
+    """Return the folder, made if need be, or one for this process alone where that cannot be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return folder
+    except OSError:
+        return tempfile.mkdtemp(prefix="rodsim-")
 
 
 def _load_tbb():
