@@ -47,6 +47,19 @@ def test_energy_falls_as_the_header_says(config, first, last, tmp_path):
 
 
 @pytest.mark.compiled
+def test_kinetic_energy_of_the_open_rod_in_its_frames(tmp_path):
+    """It drops in the first 0.1 ms, rises to its maximum at 0.6 ms, then only falls."""
+    with run("open_rod", tmp_path) as trajectory:
+        kinetic = trajectory.observable("kinetic_energy")[:, 0]
+        frame = {round(time * 1e6): index for index, time in enumerate(trajectory.time)}
+        assert kinetic[frame[100]] < 0.9 * kinetic[0]
+        top = int(np.argmax(kinetic))
+        assert trajectory.time[top] == pytest.approx(6e-4, abs=6e-5)
+        assert (np.diff(kinetic[frame[100] : top + 1]) > 0).all()
+        assert (np.diff(kinetic[top:]) < 0).all()
+
+
+@pytest.mark.compiled
 def test_ring_energies_over_time_are_the_converged_ones(tmp_path):
     """Converged (bending, twisting) of the paper's run in 1e-3 g um^2 s^-2, by another program.
 

@@ -70,6 +70,7 @@ def test_a_process_number_that_is_used_again_is_recognised(tmp_path):
         pytest.skip("no /proc here")
     lock_of(tmp_path / "out.h5", started=5)
     create(tmp_path / "out.h5").finish("stopped", {})
+    assert os.listdir(tmp_path) == ["out.h5"]
 
 
 @pytest.mark.parametrize("owner", [{"host": "elsewhere", "pid": 4}, {"pid": os.getpid()}])
