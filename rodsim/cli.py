@@ -174,7 +174,7 @@ def info(path, overrides):
     """Describe a case (points, fastest rate, stable steps) or an output file."""
     from rodsim import reports
 
-    if _is_hdf5(path):
+    if _is_output(path):
         click.echo(reports.describe_output(path))
         return
     case = _load(path, overrides)
@@ -230,12 +230,14 @@ def _warn(text):
     click.echo(f"warning: {text}", err=True)
 
 
-def _is_hdf5(path):
+def _is_output(path):
+    """Tell an output from a case, also one that is missing or is not what its name says."""
+    from rodsim.files import has_hdf5_signature
+
     try:
-        with path.open("rb") as stream:
-            return stream.read(8) == b"\x89HDF\r\n\x1a\n" or path.suffix in (".h5", ".hdf5")
+        return path.suffix in (".h5", ".hdf5") or has_hdf5_signature(path)
     except OSError:
-        return path.suffix in (".h5", ".hdf5")
+        return False
 
 
 def _prepare_numba():

@@ -22,9 +22,9 @@ import math
 import numpy as np
 
 from rodsim.jit import MAT, ONE, RODS, TRIADS, VEC, inline, kernel
+from rodsim.rods.state import HALF_TURN
 
 ENERGIES = ("bending_energy", "twisting_energy", "shear_energy", "stretch_energy")
-HALF_TURN = 4e-14  # 1 + tr A below this has lost every digit: no direction is left
 
 
 @inline

@@ -2,8 +2,9 @@
 
 ``reassoc`` is what lets LLVM vectorise a sum; ``nnan`` and ``ninf`` are left out on purpose, so a
 NaN or an infinity in a state always shows. ``error_model="numpy"``: a checked division would stop
-vectorisation. Signatures are given, so a kernel is compiled (or read from the cache) once, when
-its module is imported, and never again for another array layout.
+vectorisation. Kernels have signatures, so each is compiled (or read from the cache) once, when its
+module is imported, and never again for another array layout; but for the sums, which have none, so
+that only those are compiled that a scene calls.
 
 Loops over points use unsigned indices (``ONE`` and ``np.uint64``): for signed ones Numba adds the
 wrap-around of negative indices to each access, and LLVM then gives up vectorising.
@@ -22,13 +23,11 @@ BOOLS = "boolean[::1]"
 RODS = f"Tuple(({INTS}, {INTS}, {BOOLS}, {VEC}, {MAT}))"  # rods.state.Rods.tables
 BASE = f"Tuple(({MAT}, {TRIADS}, {MAT}))"  # position, director, tracer of a state
 WORK = f"Tuple(({MAT}, {TRIADS}, {MAT}, {MAT}, {MAT}))"  # the same, internal, loads
-SYSTEM = f"{RODS}, UniTuple(float64, 2), {BASE}, {WORK}"  # RodSystem.arguments
+SYSTEM = f"{RODS}, UniTuple(float64, 2), {BASE}, {WORK}"  # what an evaluation takes
 ONE = np.uint64(1)
 
-SUM_FLAGS = frozenset({"reassoc", "contract", "arcp", "nsz"})
+SUM_FLAGS = {"reassoc", "contract", "arcp", "nsz"}
 
 kernel = partial(njit, cache=True, error_model="numpy")
-parallel_kernel = partial(
-    njit, cache=True, error_model="numpy", parallel=True, fastmath=set(SUM_FLAGS)
-)
+parallel_kernel = partial(njit, cache=True, error_model="numpy", parallel=True, fastmath=SUM_FLAGS)
 inline = partial(njit, cache=True, error_model="numpy", inline="always")

@@ -1,6 +1,6 @@
 """Case files: YAML with line numbers -> a validated, immutable Case."""
 
-from rodsim.case.check import check_strain_twist
+from rodsim.case.check import check_strain_twist, spacings_differ
 from rodsim.case.expressions import Expression, ExpressionError
 from rodsim.case.load import case_from_mapping, load_case
 from rodsim.case.model import Case
@@ -16,5 +16,6 @@ __all__ = [
     "case_schema",
     "check_strain_twist",
     "load_case",
+    "spacings_differ",
     "template",
 ]

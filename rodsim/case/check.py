@@ -118,13 +118,19 @@ def _multiple(path: Path, value: float, time: Time) -> Iterator[Finding]:
     yield path, reason + near
 
 
+def spacings_differ(spacings: dict[str, float]) -> str | None:
+    """Return why epsilon cannot be given in spacings of these rods, or None when it can."""
+    if not spacings or max(spacings.values()) <= min(spacings.values()) * (1.0 + WHOLE):
+        return None
+    each = ", ".join(f"{name} {ds:.6g}" for name, ds in spacings.items())
+    return f"the rods' spacings differ ({each}): give epsilon as a length"
+
+
 def _rods(case: Case) -> Iterator[Finding]:
     rods = case.rods or {}
     if case.fluid is not None and isinstance(case.fluid.epsilon, Spacings):
         known = {name: rod.shape.ds for name, rod in rods.items() if rod.shape.ds is not None}
-        if known and max(known.values()) > min(known.values()) * (1.0 + WHOLE):
-            each = ", ".join(f"{name} {ds:.6g}" for name, ds in known.items())
-            reason = f"the rods' spacings differ ({each}): give epsilon as a length"
+        if reason := spacings_differ(known):
             yield ("fluid", "epsilon"), reason
     if case.plane is not None:
         for name, rod in rods.items():

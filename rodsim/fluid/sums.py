@@ -7,11 +7,13 @@ With r = x - X_k, point force g_k and point torque m_k on the fluid,
     p(x) =      sum_k (g.r) Q                                                       (62)
 
 Threads share out the targets; the sum over sources is serial in each, so the result does not
-depend on the number of threads. One source of each formula, specialised at compile time for the
-blob, for a planar scene and for targets that do not need w; what a scene does not use is never
-compiled. The kernels below take (targets, sources, loads, epsilon, viscosity, out): targets (3, T),
-sources (3, N), loads (6, N) with g in rows 0-2 and m in rows 3-5; out (6, T): u in rows 0-2, w in
-rows 3-5, or (3, T) without w; all C-contiguous.
+depend on the number of threads. The loops are specialised at compile time for the blob and for
+targets that do not need w; a planar scene has a loop of its own, over what is not 0 there. What a
+scene does not use is never compiled.
+
+The kernels take (targets, sources, loads, epsilon, viscosity, out): targets (3, T), sources (3, N),
+loads (6, N) with g in rows 0-2 and m in rows 3-5; out (6, T): u in rows 0-2, w in rows 3-5, or
+(3, T) without w; all C-contiguous.
 """
 
 import math
@@ -60,7 +62,7 @@ def _spatial_kernel(blob, angular):
     return spatial_sum
 
 
-def _planar_kernel(blob, angular):
+def _planar_kernel(blob):
     """Make the sum for a plane of constant x, g_x = m_y = m_z = 0: only u_y, u_z, w_x are not 0."""
 
     @parallel_kernel
@@ -79,19 +81,17 @@ def _planar_kernel(blob, angular):
                 q *= 0.5
                 uy += gy * h1 + along * ry - q * mx * rz
                 uz += gz * h1 + along * rz + q * mx * ry
-                if angular:
-                    d1, _ = dipole_scalars(blob, r2, e2)
-                    wx += q * (gy * rz - gz * ry) + 0.25 * d1 * mx
+                d1, _ = dipole_scalars(blob, r2, e2)
+                wx += q * (gy * rz - gz * ry) + 0.25 * d1 * mx
             out[0, i], out[1, i], out[2, i] = 0.0, scale * uy, scale * uz
-            if angular:
-                out[3, i], out[4, i], out[5, i] = scale * wx, 0.0, 0.0
+            out[3, i], out[4, i], out[5, i] = scale * wx, 0.0, 0.0
 
     return planar_sum
 
 
 # Globals, so that compiled functions may call them and still be read from Numba's cache.
 SPATIAL_7, SPATIAL_9 = (_spatial_kernel(blob, True) for blob in (ALGEBRAIC7, ALGEBRAIC9))
-PLANAR_7, PLANAR_9 = (_planar_kernel(blob, True) for blob in (ALGEBRAIC7, ALGEBRAIC9))
+PLANAR_7, PLANAR_9 = (_planar_kernel(blob) for blob in (ALGEBRAIC7, ALGEBRAIC9))
 FLOW_7, FLOW_9 = (_spatial_kernel(blob, False) for blob in (ALGEBRAIC7, ALGEBRAIC9))
 
 

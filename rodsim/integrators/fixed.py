@@ -8,7 +8,6 @@ from rodsim.rods.state import State
 class FixedStep:
     """Steps of equal size; time is counted, t_n = n * size, never accumulated."""
 
-    dense = False
     stages: int
     spectral_radius = float("nan")
 

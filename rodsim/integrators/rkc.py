@@ -84,7 +84,6 @@ class RKC:
     """
 
     order = 3
-    dense = True
 
     def __init__(self, system: RodSystem, tolerance: float):
         self.system = system

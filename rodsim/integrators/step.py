@@ -46,7 +46,6 @@ class Integrator(Protocol):
     """One method in time. ``steps`` yields accepted steps until ``end`` is reached exactly."""
 
     order: int
-    dense: bool
     accepted: int
     rejected: int
     max_stages: int

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import numpy as np
 
-from rodsim.case import check_strain_twist
+from rodsim.case import check_strain_twist, spacings_differ
 from rodsim.errors import CaseError
 from rodsim.rods.shapes import FORMULAS, place
-from rodsim.rods.state import Rods, Scene, State, StrainTwist
+from rodsim.rods.state import HALF_TURN, Rods, Scene, State, StrainTwist
 from rodsim.rods.stored import read_shape
 from rodsim.rods.tracers import tube
 
@@ -91,13 +91,9 @@ def _epsilon(case, rods):
     epsilon = case.fluid.epsilon
     if isinstance(epsilon, float):
         return epsilon, []
-    ds = rods.spacing
-    problems = []
-    if ds.max() - ds.min() > 1e-9 * ds.max():
-        listed = ", ".join(f"{n} {v:.6g}" for n, v in zip(rods.names, ds, strict=True))
-        reason = f"the rods' spacings differ ({listed}): give epsilon as a length"
-        problems = [case.source.problem(("fluid", "epsilon"), reason)]
-    return float(epsilon.spacings * ds[0]), problems
+    reason = spacings_differ(dict(zip(rods.names, rods.spacing, strict=True)))
+    problems = [case.source.problem(("fluid", "epsilon"), reason)] if reason else []
+    return float(epsilon.spacings * rods.spacing[0]), problems
 
 
 def _plane_problems(case, rods, position, director):
@@ -135,7 +131,7 @@ def _half_turns(case, rods, director):
         triads = director[:, :, begin:end]
         after = np.roll(triads, -1, axis=2)
         trace = np.einsum("ick,ick->k", triads, after)[: int(rods.segments[r])]
-        if (1.0 + trace).min() < 4e-14:
+        if (1.0 + trace).min() < HALF_TURN:
             k = int(np.argmin(trace))
             reason = f"the triads of points {k} and {k + 1} are a half-turn apart: use more points"
             problems.append(case.source.problem(("rods", name, "shape"), reason))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 LARGEST_BLOCK = 1_000_000  # numbers of strain twist evaluated ahead
+HALF_TURN = 4e-14  # 1 + tr A of neighbouring triads below this has lost every digit
 
 
 @dataclass
@@ -20,10 +21,6 @@ class State:
     position: np.ndarray
     director: np.ndarray
     tracer: np.ndarray
-
-    def copy(self) -> State:
-        """Return an independent copy."""
-        return State(self.time, self.position.copy(), self.director.copy(), self.tracer.copy())
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from rodsim.errors import FileError
+from rodsim.files import has_hdf5_signature
 
 TRIAD_TOLERANCE = 1e-4  # tables are often written with few digits
 
@@ -17,9 +18,7 @@ def read_shape(shape, folder):
     path = Path(folder) / shape.path
     if not path.is_file():
         raise FileError(f"{path}: no such file (shape of kind 'file')")
-    with path.open("rb") as stream:
-        is_hdf5 = stream.read(8) == b"\x89HDF\r\n\x1a\n"
-    if is_hdf5:
+    if has_hdf5_signature(path):
         return _from_output(shape, path)
     return *_from_table(path), shape.spacing, shape.closed
 
