@@ -22,6 +22,7 @@ _Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 # all but YAML's printable characters
 _NOT_YAML = re.compile("[^\t\n\r -~\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 DEEPEST = 30
+TOO_DEEP = f"nested deeper than {DEEPEST} levels"
 MOST_PROBLEMS = 100
 
 Path = tuple[str | int, ...]
@@ -64,6 +65,13 @@ class _Composer:
         """Give up on the text: what follows would only repeat the problem."""
         self.note(event, reason, self.stack[-1].path if self.stack else ())
         raise CaseError(self.problems)
+
+    def open_path(self) -> Path:
+        """Return the path of the value that is being read."""
+        if not self.stack:
+            return ()
+        inner = self.stack[-1]
+        return inner.path if inner.key is None else (*inner.path, inner.key)
 
     def take(self, event: yaml.Event) -> None:
         """Take the next event."""
@@ -114,7 +122,7 @@ class _Composer:
 
     def _open(self, event: yaml.CollectionStartEvent) -> None:
         if len(self.stack) >= DEEPEST:
-            self.stop(event, f"nested deeper than {DEEPEST} levels")
+            self.stop(event, TOO_DEEP)
         value = {} if isinstance(event, yaml.MappingStartEvent) else []
         self.stack.append(_Container(value, self._place(event, value)))
 
@@ -153,9 +161,9 @@ def parse(text: str, where: Callable[[int], str], prefix: Path = ()) -> tuple[An
             composer.take(event)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
-        composer.problems.append(
-            Problem(where(line_of(mark)), dotted(prefix), None, _syntax_reason(error, text))
-        )
+        reason = _syntax_reason(error, text)
+        path = (*prefix, *composer.open_path()) if reason == TOO_DEEP else prefix
+        composer.problems.append(Problem(where(line_of(mark)), dotted(path), None, reason))
     if composer.problems:
         raise CaseError(composer.problems)
     return composer.root, composer.lines
@@ -174,6 +182,8 @@ def _refuse_odd_characters(text: str) -> None:
 def _syntax_reason(error: yaml.YAMLError, text: str) -> str:
     """Return libyaml's words, after what to do about it and where the broken part began."""
     words = getattr(error, "problem", None) or str(error)
+    if "nesting depth" in words:  # newer libyaml has a limit of its own, and reads ahead to it
+        return TOO_DEEP
     mark, start = getattr(error, "problem_mark", None), getattr(error, "context_mark", None)
     elsewhere = start is not None and mark is not None and start.line != mark.line
     begun = f" (in what begins on line {line_of(start)})" if elsewhere else ""
