@@ -1,0 +1,55 @@
+"""What several commands share: arguments, options, loading a case."""
+
+from pathlib import Path
+
+import click
+
+set_option = click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Change the case, e.g. --set rods.ring.shape.points=100 (again for more keys).",
+)
+case_argument = click.argument("case_path", metavar="CASE.yaml", type=click.Path(path_type=Path))
+output_argument = click.argument("output", metavar="OUT.h5", type=click.Path(path_type=Path))
+threads_option = click.option(
+    "--threads",
+    type=click.IntRange(1, 1024),
+    help="Number of threads; by default as many as the scene is worth.",
+)
+
+
+def load(path, overrides):
+    """Return the validated case in a file."""
+    from rodsim.case import load_case
+
+    return load_case(path, overrides)
+
+
+def warn(text) -> None:
+    """Say what looks wrong but does not stop the command."""
+    click.echo(f"warning: {text}", err=True)
+
+
+def say_warnings(case) -> None:
+    """Say what looks wrong in a case."""
+    for problem in case.warnings:
+        warn(problem)
+
+
+def is_output(path) -> bool:
+    """Tell an output from a case, also one that is missing or is not what its name says."""
+    from rodsim.files import has_hdf5_signature
+
+    try:
+        return path.suffix in (".h5", ".hdf5") or has_hdf5_signature(path)
+    except OSError:
+        return False
+
+
+def prepare_numba() -> None:
+    """Choose cache and threads; before anything imports Numba."""
+    from rodsim.settings import prepare
+
+    prepare()

@@ -1,0 +1,29 @@
+"""``rodsim energy``."""
+
+from pathlib import Path
+
+import click
+
+from rodsim.commands.common import output_argument
+
+
+@click.command()
+@output_argument
+@click.option("--kT", "kelvin", type=click.FloatRange(0, min_open=True), metavar="KELVIN",
+              help="Give energies in kT at this temperature, e.g. 298.")  # fmt: skip
+@click.option("--csv", "csv_path", type=click.Path(path_type=Path, dir_okay=False),
+              help="Write the table to a file as well.")  # fmt: skip
+@click.option("--plot", "plot_path", type=click.Path(path_type=Path, dir_okay=False),
+              help="Draw the energies over time (needs rodsim[plot]).")  # fmt: skip
+def energy(output, kelvin, csv_path, plot_path):
+    """Print bending, twisting, shear, stretch, total and kinetic energy over time."""
+    from rodsim.analysis.energy import energy_table
+
+    table = energy_table(output, kelvin)
+    click.echo(table.text())
+    if csv_path:
+        table.write_csv(csv_path)
+    if plot_path:
+        from rodsim.plotting.energy import plot_energies
+
+        plot_energies(table, plot_path)

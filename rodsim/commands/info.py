@@ -1,0 +1,23 @@
+"""``rodsim info``."""
+
+from pathlib import Path
+
+import click
+
+from rodsim.commands.common import is_output, load, prepare_numba, say_warnings, set_option
+
+
+@click.command()
+@click.argument("path", metavar="CASE.yaml|OUT.h5", type=click.Path(path_type=Path))
+@set_option
+def info(path, overrides):
+    """Describe a case (points, fastest rate, stable steps) or an output file."""
+    from rodsim import reports
+
+    if is_output(path):
+        click.echo(reports.describe_output(path))
+        return
+    case = load(path, overrides)
+    say_warnings(case)
+    prepare_numba()
+    click.echo(reports.describe_case(case))

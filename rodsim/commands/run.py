@@ -1,0 +1,65 @@
+"""``rodsim run``."""
+
+from pathlib import Path
+
+import click
+
+from rodsim.commands.common import (
+    case_argument,
+    load,
+    prepare_numba,
+    say_warnings,
+    set_option,
+    threads_option,
+    warn,
+)
+
+
+@click.command()
+@case_argument
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path, dir_okay=False),
+    default="out.h5",
+    show_default=True,
+    help="Output file; one that exists is renamed to out.1.h5, ...",
+)
+@set_option
+@threads_option
+@click.option("--overwrite", is_flag=True, help="Replace an existing output file.")
+@click.option("--force", is_flag=True, help="Run also with a fixed step above its limit.")
+@click.option("--dry-run", is_flag=True, help="Check the case and say what it would do, no more.")
+@click.option("-q", "--quiet", is_flag=True, help="No progress and no summary.")
+def run(case_path, output, overrides, threads, overwrite, force, dry_run, quiet):
+    """Run a case and write its trajectory, energies and balances to an HDF5 file."""
+    from rodsim import reports
+
+    case = load(case_path, overrides)
+    say_warnings(case)
+    prepare_numba()
+    if dry_run:
+        click.echo(reports.describe_case(case))
+        return
+    from rodsim.progress import make_progress
+    from rodsim.warmup import ensure_compiled
+
+    compiled = ensure_compiled(case, lambda line: quiet or click.echo(line, err=True))
+    from rodsim.simulation import Summary, simulate
+
+    summary = Summary(compile_seconds=compiled)
+    try:
+        with make_progress(case.title or case_path.name, quiet) as progress:
+            simulate(
+                case,
+                output,
+                overwrite=overwrite,
+                threads=threads,
+                force=force,
+                notify=warn,
+                progress=progress,
+                summary=summary,
+            )
+    finally:
+        if not quiet and summary.runtime:
+            click.echo(reports.run_summary(summary, output), err=True)
