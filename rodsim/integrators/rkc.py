@@ -26,6 +26,7 @@ FILTER = 4.0  # b of the filter H211b: larger is smoother
 MOST_GROWTH = 3.0
 RADIUS_SAFETY = 1.1  # the power iteration comes from below
 FEWEST_STAGES = 4  # with fewer, nonlinear terms have an error constant of their own
+MOST_TRAVEL = 1.0  # of the strain twist in a step: 1.4 rad of a wave
 REFRESH = 25  # accepted steps between estimates of the spectral radius
 MOST_STAGES = 2000  # rounding grows as s^2 and is then still below 1e-9 of the increment
 
@@ -139,7 +140,7 @@ class RKC:
     def _accepted(self, state, f0, end):
         """Try sizes until one is accepted; return it with what ``attempt`` made of it."""
         while True:
-            size = self._limited(end - state.time)
+            size = self._followed(state.time, self._limited(end - state.time))
             y, f1, velocities, error = self.attempt(state, f0, size)
             if error <= 1.0:
                 self._grow(size, error)
@@ -182,6 +183,16 @@ class RKC:
         if size >= 0.9 * left:
             return left
         return min(size, 0.5 * left)
+
+    def _followed(self, t, size):
+        """Return a size at which a step still follows the drive, whatever the tolerance allows.
+
+        A step over whole periods of a wave would see the same rate at both ends and find no error.
+        """
+        travel = self.system.scene.strain_twist.travel
+        while (far := travel(t, size)) > MOST_TRAVEL:
+            size *= max(0.1, 0.9 * MOST_TRAVEL / far)
+        return size
 
     def _estimate_radius(self, state, f0):
         rho = self._radius.estimate(state, f0)

@@ -26,12 +26,18 @@ def temporary_name(path: Path) -> Path:
     return path.with_name(f".{path.name}.{os.getpid()}.tmp")
 
 
+def set_aside(path: Path) -> Path | None:
+    """Rename a file that exists to the next free name; return that, or None if there is none."""
+    if not os.path.lexists(path):
+        return None
+    moved = free_name(path)
+    os.rename(path, moved)
+    return moved
+
+
 def take_place(built: Path, path: Path, overwrite: bool) -> Path | None:
     """Give a finished file its name; return where the output that had it went, if it was kept."""
-    moved = None
-    if os.path.lexists(path) and not overwrite:
-        moved = free_name(path)
-        os.rename(path, moved)
+    moved = None if overwrite else set_aside(path)
     try:
         os.replace(built, path)
     except OSError:

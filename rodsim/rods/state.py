@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
+TRAVEL_SAMPLES = 6
 LARGEST_BLOCK = 1_000_000  # numbers of strain twist evaluated ahead
 HALF_TURN = 4e-14  # 1 + tr A of neighbouring triads below this has lost every digit
 
@@ -119,6 +121,23 @@ class StrainTwist:
             return self._values[None]
         most = max(2, LARGEST_BLOCK // self._values.size)
         return np.array([self(t).copy() for t in times[:most]])
+
+    def travel(self, t: float, size: float) -> float:
+        """Return how far Omega goes from t to t + size, over its own largest size; 0 if not driven.
+
+        The sum of |Omega(t_j+1) - Omega(t_j)| over some times, less its largest term, over the
+        largest |Omega(t_j)|, with |.| the root mean square over the segments: 0.7 sigma size for a
+        short stretch of a wave of angular frequency sigma. The largest term is left out because
+        a jump stays a jump however short the step; the times are not evenly spaced, so that a wave
+        cannot look as if it stood still.
+        """
+        if not self.driven:
+            return 0.0
+        values = [self(t + size * (j / TRAVEL_SAMPLES) ** 2).copy() for j in range(TRAVEL_SAMPLES)]
+        values.append(self(t + size))
+        gaps = [np.linalg.norm(b - a) for a, b in pairwise(values)]
+        largest = max(np.linalg.norm(value) for value in values)
+        return float((sum(gaps) - max(gaps)) / largest) if largest > 0.0 else 0.0
 
     def __call__(self, t: float) -> np.ndarray:
         """Return Omega (3, N), 1/length, at time t; valid until the next call."""

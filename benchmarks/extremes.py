@@ -1,0 +1,183 @@
+"""Stiff and extreme scenes, as plain cases: what ``stability.py`` runs and the tests sample.
+
+Each is small, so that the whole table takes minutes: an open rod of 41 points that coils (the
+paper's moduli), a ring of 60, a flagellum of 80. ``SCENES`` maps a group to its scenes by name.
+"""
+
+import copy
+import math
+
+import numpy as np
+
+LENGTH, POINTS = 5.9, 41
+ROD = {
+    "fluid": {"viscosity": 1e-6, "epsilon": 0.47},
+    "rods": {
+        "rod": {
+            "shape": {"kind": "straight", "points": POINTS, "length": LENGTH, "perturbation": 1e-4},
+            "moduli": {"bending": 3.5e-3, "twisting": 3.5e-3, "shear": 0.8, "stretch": 0.8},
+            "strain_twist": [1.3, 0, 1.7],
+        }
+    },
+    "time": {"end": 1e-3, "tolerance": 1e-4},
+}
+RING = {
+    "fluid": {"viscosity": 1e-6, "epsilon": 0.314},
+    "rods": {
+        "ring": {
+            "shape": {"kind": "ring", "radius": 2.5, "points": 60, "twist_perturbation": 1e-3},
+            "moduli": {"bending": 3.5e-3, "twisting": 3.5e-3, "shear": 0.8, "stretch": 0.8},
+            "strain_twist": ["1e-3*cos(0.8*s)", 0, 0.6],
+        }
+    },
+    "time": {"end": 0.05, "tolerance": 1e-4},
+}
+TAIL = {
+    "parameters": {"k": 1.2566370614, "b": 0.3, "sigma": 400},
+    "fluid": {"viscosity": 1e-6, "epsilon": 0.47},
+    "rods": {
+        "tail": {
+            "shape": {"kind": "straight", "points": 80, "length": 10.5},
+            "moduli": {"bending": 3.5e-2, "twisting": 3.5e-2, "shear": 0.8, "stretch": 0.8},
+            "strain_twist": ["-k**2*b*sin(k*s + sigma*t)", 0, 0],
+        }
+    },
+    "plane": "yz",
+    "time": {"end": 0.0157, "tolerance": 1e-4},
+}
+MODULI = ("bending", "twisting", "shear", "stretch")
+
+
+def changed(base, changes):
+    """Return a copy of a case with some values, by dotted path, set or removed (None)."""
+    case = copy.deepcopy(base)
+    for path, value in changes.items():
+        *parents, last = path.split(".")
+        node = case
+        for key in parents:
+            node = node.setdefault(key, {})
+        if value is None:
+            node.pop(last, None)
+        else:
+            node[last] = value
+    return case
+
+
+def stiffer(factor, names=MODULI):
+    """The rod with some of its moduli multiplied."""
+    moduli = ROD["rods"]["rod"]["moduli"]
+    return changed(ROD, {f"rods.rod.moduli.{name}": factor * moduli[name] for name in names})
+
+
+def rod(**changes):
+    """The rod with changes; ``__`` stands for a dot."""
+    return changed(ROD, {path.replace("__", "."): value for path, value in changes.items()})
+
+
+def of_shape(points, epsilon_in_spacings):
+    """The rod at its length with other points, epsilon in their spacing."""
+    return rod(
+        rods__rod__shape__points=points,
+        fluid__epsilon=epsilon_in_spacings * LENGTH / (points - 1),
+    )
+
+
+def rescaled(length, mass, time):
+    """The rod in other units: the same motion, every number scaled."""
+    force = mass * length / time**2
+    changes = {f"rods.rod.moduli.{name}": v * force * (length**2 if i < 2 else 1)
+               for i, (name, v) in enumerate(ROD["rods"]["rod"]["moduli"].items())}  # fmt: skip
+    return changed(ROD, changes | {
+        "fluid.viscosity": 1e-6 * mass / length / time,
+        "fluid.epsilon": 0.47 * length,
+        "rods.rod.shape.length": LENGTH * length,
+        "rods.rod.strain_twist": [1.3 / length, 0, 1.7 / length],
+        "time.end": 1e-3 * time,
+    })  # fmt: skip
+
+
+def table(stretch=1.0, turn=0.0, at_all=False):
+    """A straight rod as rows x y z D1 D2 D3: stretched, triads turned about D3 by degrees
+    between the two middle points, or between all neighbours.
+    """
+    rows = np.zeros((POINTS, 12))
+    rows[:, 2] = stretch * LENGTH / (POINTS - 1) * np.arange(POINTS)
+    steps = np.arange(POINTS) if at_all else np.arange(POINTS) >= POINTS // 2
+    angle = np.radians(turn) * steps
+    rows[:, 3], rows[:, 4] = np.cos(angle), np.sin(angle)
+    rows[:, 6], rows[:, 7] = -np.sin(angle), np.cos(angle)
+    rows[:, 11] = 1.0
+    return rows
+
+
+def from_table(**options):
+    """The rod from a text table; ``stability.run`` writes the file."""
+    shape = {"kind": "file", "path": "rod.txt", "spacing": LENGTH / (POINTS - 1)}
+    case = changed(ROD, {"rods.rod.shape": shape})
+    return case | {"table": table(**options)}
+
+
+def pair(gap):
+    """Two rods side by side, ``gap`` times epsilon apart."""
+    case = copy.deepcopy(ROD)
+    case["rods"]["other"] = copy.deepcopy(case["rods"]["rod"])
+    case["rods"]["other"]["shape"]["origin"] = [gap * 0.47, 0, 0]
+    case["rods"]["other"]["strain_twist"] = [-1.3, 0, 1.7]
+    return case
+
+
+def ring_twist(omega_r0):
+    """A ring with total intrinsic twist 2 pi omega_r0; unstable above about 1.7345."""
+    seeded = ["1e-3*cos(0.8*s)", 0, omega_r0 / 2.5]
+    return changed(RING, {"rods.ring.strain_twist": seeded, "time.end": 0.2})
+
+
+POWERS = (-3, -2, -1, 1, 2, 3, 4)
+SPACING = LENGTH / (POINTS - 1)
+SCENES = {
+    "moduli, all": {f"x 1e{p}": stiffer(10.0**p) for p in POWERS},
+    "shear and stretch": {f"x 1e{p}": stiffer(10.0**p, MODULI[2:]) for p in POWERS},
+    "bending and twisting": {f"x 1e{p}": stiffer(10.0**p, MODULI[:2]) for p in POWERS},
+    "a/a3": {f"{r:g}": stiffer(1.0 / r, ["twisting"]) for r in (0.1, 0.3, 3.0, 10.0)},
+    "epsilon, spacings": {f"{n:g}": rod(fluid__epsilon=n * SPACING)
+                          for n in (0.25, 0.5, 1.5, 4, 10, 20, 40)},
+    "points at fixed length": {
+        **{f"{n}": rod(rods__rod__shape__points=n, rods__rod__strain_twist=[0.3, 0, 0.2])
+           for n in (3, 5)},
+        **{f"{n}": rod(rods__rod__shape__points=n) for n in (20, 200, 2000)},
+        "200, epsilon = 4 spacings": of_shape(200, 4),
+        "2000, epsilon = 4 spacings, to 0.1 us": changed(of_shape(2000, 4), {"time.end": 1e-7}),
+    },
+    "viscosity": {f"{mu:g}": rod(fluid__viscosity=mu) for mu in (1e-9, 1e-7, 1e-4, 1e3)},
+    "units": {
+        "length x 2^20, mass x 2^-30, time x 2^10": rescaled(2.0**20, 2.0**-30, 2.0**10),
+        "metres": rescaled(1e-6, 1e-3, 1e-3),
+        "nanometres": rescaled(1e3, 1e6, 1e6),
+    },
+    "rest state": {
+        "Omega ds = 1.992, curvature": rod(rods__rod__strain_twist=[1.992 / SPACING, 0, 0]),
+        "Omega ds = 1.992, twist": rod(rods__rod__strain_twist=[0, 0, 1.992 / SPACING]),
+        "Omega ds = 2.001": rod(rods__rod__strain_twist=[2.001 / SPACING, 0, 0]),
+        "50 turns on 200 points": rod(rods__rod__shape__points=200,
+                                      rods__rod__strain_twist=[0, 0, 100 * math.pi / LENGTH]),
+    },
+    "waves": {
+        "sigma = 400 rad/s": TAIL,
+        "sigma = 6.28e4 rad/s": changed(TAIL, {"parameters.sigma": 6.28e4, "time.end": 2e-3}),
+        "tolerance 0.5": changed(TAIL, {"time.tolerance": 0.5}),
+        "steepens to 25 times": changed(TAIL, {
+            "rods.tail.strain_twist": ["-k**2*b*sin(k*s + sigma*t)*(1 + 4e8*t**4)", 0, 0]}),
+    },
+    "starts": {
+        "stretched by 2": from_table(stretch=2.0),
+        "compressed by half": from_table(stretch=0.5),
+        "one triad turned by 179 degrees": from_table(turn=179.0),
+        "all triads turned by 179 degrees": from_table(turn=179.0, at_all=True),
+        "a triad turned by 180 degrees": from_table(turn=180.0),
+    },
+    "neighbours": {"two rods 0.1 epsilon apart": pair(0.1), "on one line": pair(0.0)},
+    "ring": {"just below its instability": ring_twist(1.70),
+             "just above it": ring_twist(1.80)},
+    "long": {"rod, 100 times the time": rod(time__end=0.1),
+             "ring, 100 times the time": changed(RING, {"time.end": 5.0})},
+}  # fmt: skip

@@ -1,0 +1,107 @@
+"""``rodsim converge``."""
+
+from pathlib import Path
+
+import click
+
+from rodsim.commands.common import (
+    case_argument,
+    load,
+    prepare_numba,
+    say_warnings,
+    set_option,
+    threads_option,
+    warn,
+)
+
+
+class _Axes(click.ParamType):
+    """A list such as ``step,tolerance``."""
+
+    name = "axes"
+
+    def convert(self, value, param, ctx):
+        from rodsim.convergence.rows import AXES
+
+        names = [name.strip() for name in value.split(",")]
+        for name in names:
+            if name not in AXES:
+                self.fail(f"'{name}' is none of {', '.join(AXES)}", param, ctx)
+        return names
+
+
+@click.command()
+@case_argument
+@click.option(
+    "--in",
+    "axes",
+    type=_Axes(),
+    default="tolerance,step,points,epsilon",
+    show_default=True,
+    metavar="AXES",
+    help="What to vary.",
+)
+@click.option(
+    "-o",
+    "--output",
+    "report",
+    type=click.Path(path_type=Path),
+    default="converge",
+    show_default=True,
+    help="Name of the report: .csv and .png are added; earlier ones are renamed.",
+)
+@set_option
+@threads_option
+@click.option("-q", "--quiet", is_flag=True, help="No progress.")
+def converge(case_path, axes, report, overrides, threads, quiet):
+    """Measure error against run time of this very scene.
+
+    Runs the case again and again: at other tolerances (rkc) and steps (euler, rk4), with other
+    numbers of points (length and epsilon fixed), and with other epsilons (a sensitivity), each held
+    against a reference that it computes itself. Ctrl-C keeps what has been measured.
+    """
+    case = load(case_path, overrides)
+    say_warnings(case)
+    prepare_numba()
+    from rodsim.warmup import ensure_compiled
+
+    plain = load(case_path, (*overrides, "tracers=null"))
+    ensure_compiled(plain, lambda line: quiet or click.echo(line, err=True))
+    from rodsim.convergence import report as reporting
+    from rodsim.convergence.study import Study
+    from rodsim.output.paths import set_aside
+    from rodsim.progress import make_progress
+
+    table, picture = (report.with_name(report.name + end) for end in (".csv", ".png"))
+    for path in (table, picture):
+        moved = set_aside(path)
+        if moved:
+            warn(f"the earlier {path} is now {moved}")
+    rows, interrupted = reporting.CsvRows(table), False
+    with make_progress(case.title or case_path.name, quiet) as progress:
+        study = Study(
+            lambda more: load(case_path, (*overrides, *more)), axes, threads, progress=progress
+        )
+        try:
+            for section, result in study.run():
+                rows.add(section, result)
+        except KeyboardInterrupt:
+            interrupted = True
+    _show(study, table, picture)
+    if interrupted:
+        raise KeyboardInterrupt
+
+
+def _show(study, table, picture):
+    from rodsim.convergence import report as reporting
+    from rodsim.errors import UsageError
+    from rodsim.plotting.convergence import plot_study
+
+    click.echo(reporting.text(study))
+    written = [str(table)]
+    try:
+        plot_study(study, picture)
+        written.append(str(picture))
+    except UsageError as error:
+        warn(error)
+    click.echo(f"wrote {' and '.join(written)}", err=True)

@@ -1,0 +1,133 @@
+"""One run of a case in memory, and how far its end is from that of another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from time import perf_counter
+
+import numpy as np
+
+from rodsim.analysis.difference import position_errors, triad_angle
+from rodsim.elasticity import ENERGIES
+from rodsim.errors import DivergedError, StepFailure
+from rodsim.machine import Machine
+from rodsim.rods import Scene, State, build_scene
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The end of a run, and what it has cost.
+
+    ``velocity`` (3,): mean velocity of the centroid of all rods over the run, length/time;
+    ``energies``: elastic energy at both ends. ``seconds``: each repeat of the solve, without
+    compiling and output; ``pairs``: of a target and a source, in one evaluation.
+    """
+
+    scene: Scene
+    end: State
+    velocity: np.ndarray
+    energies: tuple[float, float]
+    seconds: tuple[float, ...]
+    evaluations: int
+    steps: int
+    rejected: int
+
+    @property
+    def pairs(self) -> int:
+        """Number of pairs in the sums of an evaluation."""
+        return self.scene.rods.points**2
+
+
+@dataclass(frozen=True)
+class Errors:
+    """What separates two outcomes; ``speed`` is None where nothing swims.
+
+    position: largest distance, length; relative: the same over the longest rod; rms: root mean
+    square distance, length; angle: largest angle between triads, degrees; energy: difference
+    over the larger of the elastic energies at both ends; speed: |v - v_ref|/|v_ref|, v the mean
+    velocity of the centroid.
+    """
+
+    position: float
+    relative: float
+    rms: float
+    angle: float
+    energy: float
+    speed: float | None
+
+
+def solve(case, threads=None, repeats=1, enough=2.0, progress=lambda fraction: None) -> Outcome:
+    """Run a case to its end without an output; again until ``repeats`` or ``enough`` seconds.
+
+    Raises DivergedError as ``simulate`` does.
+    """
+    scene, seconds = build_scene(case), []
+    while len(seconds) < repeats and (not seconds or sum(seconds) < enough):
+        machine = Machine(case, scene, force=False)
+        with machine.threads(threads):
+            begin = perf_counter()
+            end = _march(machine, case.time.end, progress)
+            seconds.append(perf_counter() - begin)
+    system, integrator, initial = machine.system, machine.integrator, scene.initial
+    drift = end.position.mean(axis=1) - initial.position.mean(axis=1)
+    return Outcome(
+        scene=scene,
+        end=end,
+        velocity=drift / case.time.end,
+        energies=(_energy(system, initial), _energy(system, end)),
+        seconds=tuple(seconds),
+        evaluations=system.evaluations,
+        steps=integrator.accepted,
+        rejected=integrator.rejected,
+    )
+
+
+def _march(machine, end, progress):
+    state = machine.system.scene.initial
+    try:
+        for step in machine.integrator.steps(state, end):
+            machine.watch.check(step)
+            state = step.end
+            progress(state.time / end)
+    except StepFailure as failure:
+        machine.watch.stop(failure, machine.integrator.accepted + 1)
+    return state
+
+
+def _energy(system, state):
+    observables = system.observe(state)[1]
+    return float(sum(observables[name].sum() for name in ENERGIES))
+
+
+def compare(run: Outcome, reference: Outcome) -> Errors:
+    """Return the errors of a run, at the points that it shares with the reference.
+
+    A reference with more points has all of the run's: its intervals were halved.
+    """
+    ours, theirs = _shared(run, reference), _shared(reference, run)
+    largest, rms = position_errors(ours.position, theirs.position)
+    scale = max(abs(energy) for energy in reference.energies)
+    speed = None
+    if reference.scene.strain_twist.driven:
+        gap = np.linalg.norm(run.velocity - reference.velocity)
+        speed = float(gap / np.linalg.norm(reference.velocity))
+    return Errors(
+        position=largest,
+        relative=largest / reference.scene.length_scale,
+        rms=rms,
+        angle=triad_angle(ours.director, theirs.director),
+        energy=abs(run.energies[1] - reference.energies[1]) / scale if scale else 0.0,
+        speed=speed,
+    )
+
+
+def _shared(run, other):
+    """Return the state of those points of a run that the other one has too."""
+    ours, theirs = run.scene.rods, other.scene.rods
+    chosen = [
+        first + np.arange(count)[:: max(1, ours.segments[r] // theirs.segments[r])]
+        for r, (first, count) in enumerate(zip(ours.first, ours.count, strict=True))
+    ]
+    nodes = np.concatenate(chosen)
+    end = run.end
+    return State(end.time, end.position[:, nodes], end.director[:, :, nodes], end.tracer)

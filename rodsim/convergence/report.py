@@ -1,0 +1,147 @@
+"""What a study says: a table on the terminal, rows in a CSV file, a picture."""
+
+from __future__ import annotations
+
+import csv
+
+import numpy as np
+
+from rodsim.convergence.study import Result, Section, Study
+from rodsim.errors import FileError
+
+NEAR = 2.0  # times the reference's own error: below this a row's error is not its own
+METHODS = ("rkc", "euler", "rk4")  # in the order of the table
+HEADS = {
+    "time": "error against run time: tolerance of rkc, step of euler and rk4",
+    "points": "error of the discretisation: points at fixed length and epsilon",
+    "epsilon": "sensitivity to epsilon: another blob is another model, this is no error",
+}
+
+
+def fitted_order(section: Section, method: str) -> float | None:
+    """Return the slope of the largest position error against the step or spacing of a method.
+
+    Least squares on logarithms over the rows well above the reference's own error; for rkc in
+    time against the mean accepted step. None with fewer than two such rows.
+    """
+    floor = NEAR * section.own.position if section.own else 0.0
+    pairs = [
+        (_size(section, result), result.errors.position)
+        for result in section.results
+        if result.row.method == method and result.errors and result.errors.position > floor
+    ]
+    if section.axis == "epsilon" or len(pairs) < 2:
+        return None
+    size, error = np.log(pairs).T
+    return float(np.polyfit(size, error, 1)[0])
+
+
+def _size(section, result):
+    if section.axis == "points":
+        return 1.0 / result.outcome.scene.rods.segments.sum()
+    return 1.0 / result.outcome.steps
+
+
+def text(study: Study) -> str:
+    """Return every section as aligned text, each with its reference and the orders seen."""
+    return "\n\n".join(
+        "\n".join([*_section(study, section), *_choice(study, section)])
+        for section in study.sections
+    )
+
+
+def _section(study, section):
+    unit, swims = study.case.units.length, study.scene.strain_twist.driven
+    yield HEADS[section.axis]
+    own = "" if section.own is None else f": good to {section.own.position:.1e} {unit}"
+    yield f"reference: {section.reference}{own}"
+    yield f"largest and rms distance in {unit}, energy and speed relative, wall time in seconds"
+    names = ["method", "value", "largest", "of length", "rms", "angle/deg", "energy"]
+    names += ["speed"] * swims + ["solve/s", "evaluations", "pairs x evals"]
+    yield "  ".join(f"{name:>13}" for name in names)
+    for result in sorted(
+        section.results, key=lambda r: (METHODS.index(r.row.method), -r.row.value)
+    ):
+        yield "  ".join(f"{cell:>13}" for cell in _cells(section, result, swims))
+    for method in dict.fromkeys(result.row.method for result in section.results):
+        order = fitted_order(section, method)
+        if order is not None:
+            yield f"observed order of {method}: {order:.2f}"
+
+
+def _cells(section, result, swims):
+    head = [result.row.method, f"{result.row.value:.6g}"]
+    if result.outcome is None:
+        return [*head, result.status]
+    run, e = result.outcome, result.errors
+    cost = [f"{np.median(run.seconds):.3g}", str(run.evaluations),
+            f"{run.evaluations * run.pairs:.3g}"]  # fmt: skip
+    if e is None:
+        return [*head, "reference", *[""] * (4 + swims), *cost]
+    near = section.own is not None and e.position < NEAR * section.own.position
+    largest = ("~" if near else "") + f"{e.position:.2e}"
+    speed = [f"{e.speed:.2e}"] if swims else []
+    sizes = [f"{x:.2e}" for x in (e.relative, e.rms, e.angle, e.energy)]
+    return [*head, largest, *sizes, *speed, *cost]
+
+
+def _choice(study, section):
+    """Yield, for every decade of error, the fastest run of each method within it."""
+    if section.axis != "time":
+        return
+    done = [r for r in section.results if r.errors]
+    methods = sorted({r.row.method for r in done}, key=METHODS.index)
+    if not done:
+        return
+    best = min(r.errors.position for r in done)
+    worst = max(r.errors.position for r in done)
+    yield "fastest run of each method within"
+    for decade in range(int(np.ceil(np.log10(worst))), int(np.floor(np.log10(best))), -1):
+        fastest = {}
+        for method in methods:
+            within = [r for r in done if r.row.method == method and r.errors.position <= 10**decade]
+            if within:
+                fastest[method] = min(within, key=lambda r: np.median(r.outcome.seconds))
+        yield f"  1e{decade:+03d} {study.case.units.length}:  " + ";  ".join(_named(fastest))
+
+
+def _named(fastest):
+    first = None
+    for method, result in fastest.items():
+        seconds = float(np.median(result.outcome.seconds))
+        ratio = "" if first is None else f" = {seconds / first:.3g} times that"
+        first = first or seconds
+        yield f"{method} {result.row.value:g} {seconds:.3g} s{ratio}"
+
+
+class CsvRows:
+    """Rows go to the file as they end: what an interrupted study has is kept."""
+
+    COLUMNS = (
+        "section method value status position_error relative_error rms_error triad_angle_degrees "
+        "energy_error speed_error seconds seconds_low seconds_high repeats steps rejected "
+        "evaluations pairs reference_error"
+    ).split()
+
+    def __init__(self, path):
+        self.path = path
+        self._write(self.COLUMNS, "x")
+
+    def add(self, section: Section, result: Result) -> None:
+        """Write one row."""
+        e, run = result.errors, result.outcome
+        own = section.own.position if section.own else ""
+        errors = [""] * 6 if e is None else ["" if x is None else x for x in vars(e).values()]
+        cost = [""] * 8
+        if run is not None:
+            spread = np.median(run.seconds), min(run.seconds), max(run.seconds)
+            cost = [*spread, len(run.seconds), run.steps, run.rejected, run.evaluations, run.pairs]
+        row = result.row
+        self._write([row.axis, row.method, row.value, result.status, *errors, *cost, own], "a")
+
+    def _write(self, cells, mode):
+        try:
+            with open(self.path, mode, newline="") as stream:
+                csv.writer(stream).writerow(cells)
+        except OSError as error:
+            raise FileError(f"{self.path}: cannot be written: {error.strerror}") from error

@@ -1,0 +1,138 @@
+"""Which runs a study makes: each is the case with some keys changed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+AXES = ("tolerance", "step", "points", "epsilon")
+FIXED = ("euler", "rk4")
+TOLERANCES = tuple(10.0 ** (k / 2) for k in range(4, -5, -1))  # times the case's own
+REFERENCE, CHECK = 1e-4, 1e-3  # of the case's tolerance
+TIGHTEST = 1e-12
+SPACE_TOLERANCE = 1e-6  # in a study of space no error in time is to be seen
+STABLE = 0.9  # of the limit of stability: the longest step of a fixed-step method
+HALVINGS = {"euler": 3, "rk4": 2}
+SENSITIVITY = (0.5, 2**-0.5, 2**0.5, 2.0)  # epsilon over the case's own
+
+
+@dataclass(frozen=True)
+class Row:
+    """One run: which axis and method it belongs to, the value there, the keys that make it so.
+
+    ``evaluations``: a guess of what it costs, for the progress bar and for --max-wall.
+    """
+
+    axis: str
+    method: str
+    value: float
+    overrides: tuple[str, ...]
+    evaluations: float
+
+
+def quiet(case) -> tuple[str, ...]:
+    """Return what every run changes: no tracers, which move no rod, and no frames but the end."""
+    return "tracers=null", f"output.interval={case.time.end!r}"
+
+
+def rkc(tolerance: float) -> tuple[str, ...]:
+    """Return the keys that choose the adaptive method."""
+    return "time.integrator=rkc", "time.step=null", f"time.tolerance={tolerance!r}"
+
+
+def guess(case, rate: float, tolerance: float) -> float:
+    """Guess the evaluations of rkc: sqrt(T rho N/0.65) for N steps, order 3 in the step."""
+    steps = 90.0 * (1e-4 / tolerance) ** 0.25
+    return math.sqrt(case.time.end * rate * steps / 0.65) + 4.0 * steps
+
+
+def tolerance_rows(case, rate) -> list[Row]:
+    """Tolerances two decades around the case's own, half a decade apart."""
+    values = [float(f"{case.time.tolerance * factor:.0e}") for factor in TOLERANCES]
+    return [
+        Row("tolerance", "rkc", value, rkc(value), guess(case, rate, value))
+        for value in values
+        if TIGHTEST < value < 1.0
+    ]
+
+
+def step_rows(case, limits) -> list[Row]:
+    """For each method of fixed step the longest stable step, halved once or twice."""
+    rows = []
+    for method in FIXED:
+        count = _steps(case.time.end, STABLE * limits.largest_steps[method])
+        for halving in range(HALVINGS[method]):
+            step = case.time.end / (count * 2**halving)
+            overrides = (
+                f"time.integrator={method}",
+                f"time.step={step!r}",
+                "time.tolerance=null",
+            )
+            stages = {"euler": 1, "rk4": 4}[method]
+            rows.append(Row("step", method, step, overrides, stages * case.time.end / step))
+    return rows
+
+
+def _steps(end, longest):
+    """Return a number of steps to the end, none longer than that; of 1, 2 or 5 times 10^n if
+    such a step leads there.
+    """
+    power = 10.0 ** math.floor(math.log10(longest))
+    for factor in (5, 2, 1):
+        step = factor * power
+        count = round(end / step)
+        if step <= longest and count and abs(end / step - count) < 1e-9 * count:
+            return count
+    return math.ceil(end / longest)
+
+
+def refine(case, factor: float) -> tuple[str, ...]:
+    """Return the keys that multiply every rod's number of segments; length and epsilon stay."""
+    keys = []
+    for name, rod in case.rods.items():
+        shape, closed = rod.shape, rod.shape.is_closed
+        keys.append(f"rods.{name}.shape.points={round(shape.segments * factor) + (not closed)}")
+        if getattr(shape, "spacing", None) is not None:
+            keys.append(f"rods.{name}.shape.spacing={shape.spacing / factor!r}")
+    return tuple(keys)
+
+
+def space_levels(case) -> list[float]:
+    """Return the factors on the segments: halves while they divide, the case's own, twice that;
+    the last, twice the one before, is the reference.
+    """
+    segments = [rod.shape.segments for rod in case.rods.values()]
+    coarse = [f for f in (4, 2) if all(s % f == 0 and s // f >= 3 for s in segments)]
+    return [*(1.0 / f for f in coarse), 1.0, 2.0, 4.0]
+
+
+def points_rows(case, rate, epsilon) -> list[Row]:
+    """Numbers of points: intervals doubled at fixed length and epsilon; the last is the finest."""
+    keys = (f"fluid.epsilon={epsilon!r}", *rkc(SPACE_TOLERANCE))
+    total = sum(rod.shape.segments for rod in case.rods.values())
+    return [
+        Row(
+            "points",
+            "rkc",
+            sum(round(rod.shape.segments * f) + (not rod.shape.is_closed)
+                for rod in case.rods.values()),
+            (*refine(case, f), *keys),
+            guess(case, rate, SPACE_TOLERANCE) * f**2,
+        )
+        for f in space_levels(case)
+        if total
+    ]  # fmt: skip
+
+
+def epsilon_rows(case, rate, epsilon) -> list[Row]:
+    """Other widths of the blob: another model, not a worse one."""
+    return [
+        Row(
+            "epsilon",
+            "rkc",
+            factor * epsilon,
+            (f"fluid.epsilon={factor * epsilon!r}", *rkc(SPACE_TOLERANCE)),
+            guess(case, rate, SPACE_TOLERANCE) / factor,
+        )
+        for factor in SENSITIVITY
+    ]

@@ -1,0 +1,197 @@
+"""The runs of a study, one after another, each held against a reference as it ends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from time import monotonic
+
+from rodsim.convergence import rows
+from rodsim.convergence.outcome import Errors, Outcome, compare, solve
+from rodsim.convergence.rows import Row
+from rodsim.dynamics import RodSystem
+from rodsim.errors import CaseError, DivergedError, UsageError
+from rodsim.integrators.limits import stability
+from rodsim.rods import build_scene
+
+REPEATS = 3
+BESIDE = 20_000  # pairs that all but the sums takes as long as, in an evaluation
+DONE, REFUSED, DIVERGED, LEFT_OUT = "", "refused", "diverged", "left out"
+
+
+@dataclass(frozen=True)
+class Result:
+    """A row that was run, or ``status``: why not."""
+
+    row: Row
+    outcome: Outcome | None = None
+    errors: Errors | None = None
+    status: str = DONE
+
+
+@dataclass
+class Section:
+    """One axis: its reference, in words and with its own error, and the rows so far."""
+
+    axis: str
+    reference: str
+    own: Errors | None = None
+    results: list[Result] = field(default_factory=list)
+
+
+class OutOfTime(Exception):
+    """The study has used the wall time that it was given."""
+
+
+class Study:
+    """Error against run time of a case.
+
+    ``load(overrides)`` returns the case with more keys changed; ``axes`` are some of
+    ``rows.AXES``; ``max_wall`` (seconds): rows that would not end by then are left out.
+    """
+
+    def __init__(self, load: Callable, axes, threads=None, max_wall=None, progress=None):
+        self.load, self.threads, self.progress = load, threads, progress
+        self.case = load(())
+        self.scene = build_scene(self.case)
+        self.limits = stability(RodSystem(self.scene))
+        self.axes = [axis for axis in rows.AXES if axis in axes]
+        self.sections: list[Section] = []
+        self._end = monotonic() + max_wall if max_wall else float("inf")
+        self._seconds_per_pair = None
+        self._weights = self._done = 0.0
+
+    def run(self) -> Iterator[tuple[Section, Result]]:
+        """Yield each row as it ends; ``sections`` holds them all.
+
+        Raises UsageError if even a reference does not fit into the time, or for an axis that the
+        scene does not have.
+        """
+        plan = self._plan()
+        self._weights = sum(self._weight(row) for _, part in plan for row in part)
+        for section, part in plan:
+            yield from self._section(section, part)
+
+    def _plan(self):
+        """Return (section, rows) in order; the first row of each is its reference.
+
+        Tolerances and steps share one reference; the second row tells how good that is.
+        """
+        case, rate = self.case, self.limits.rate
+        plan = []
+        timed = [axis for axis in self.axes if axis in ("tolerance", "step")]
+        if timed:
+            tight, check = (
+                max(rows.TIGHTEST, case.time.tolerance * factor)
+                for factor in (rows.REFERENCE, rows.CHECK)
+            )
+            pair = [
+                Row("time", "rkc", value, rows.rkc(value), rows.guess(case, rate, value))
+                for value in (tight, check)
+            ]
+            makers = {
+                "tolerance": lambda: rows.tolerance_rows(case, rate),
+                "step": lambda: rows.step_rows(case, self.limits),
+            }
+            found = [row for axis in timed for row in makers[axis]()]
+            words = f"rkc at tolerance {tight:g}, held against tolerance {check:g}"
+            plan.append((Section("time", words), [*pair, *found]))
+        if "points" in self.axes:
+            self._need_formulas()
+            found = rows.points_rows(case, rate, self.scene.epsilon)
+            words = f"{found[-1].value:.0f} points; its error by order 2 from {found[-2].value:.0f}"
+            plan.append((Section("points", words), found[::-1]))
+        if "epsilon" in self.axes:
+            own = Row("epsilon", "rkc", self.scene.epsilon, rows.rkc(rows.SPACE_TOLERANCE),
+                      rows.guess(case, rate, rows.SPACE_TOLERANCE))  # fmt: skip
+            words = f"the case's own epsilon, {self.scene.epsilon:.6g}"
+            found = rows.epsilon_rows(case, rate, self.scene.epsilon)
+            plan.append((Section("epsilon", words), [own, *found]))
+        return plan
+
+    def _need_formulas(self):
+        for name, rod in self.case.rods.items():
+            if rod.shape.segments is None:
+                raise UsageError(
+                    f"points: rod '{name}' comes from a file, which gives its points once and for "
+                    "all: leave 'points' out of --in"
+                )
+
+    def _section(self, section, part):
+        first, *others = part
+        begin = monotonic()
+        reference = self._outcome(first, repeats=1)
+        if not isinstance(reference, Outcome):
+            raise UsageError(f"{section.axis}: the reference ({section.reference}) is {reference}")
+        self._measured(reference, monotonic() - begin)
+        self.sections.append(section)
+        if section.axis == "points":
+            others = [*others, first]
+        for row in others:
+            result = self._result(row, first, reference)
+            if section.own is None and section.axis != "epsilon" and result.errors:
+                section.own = _own(section, result.errors)
+            if row.axis == "time":
+                continue
+            section.results.append(result)
+            yield section, result
+
+    def _result(self, row, first, reference):
+        if row is first:
+            return Result(row, reference)
+        left = self._end - monotonic()
+        if self._seconds_per_pair and self._predicted(row) > left:
+            self._done += self._weight(row)
+            return Result(row, status=f"{LEFT_OUT}: would take some {self._predicted(row):.0f} s")
+        outcome = self._outcome(row, repeats=1 if row.axis == "time" else REPEATS)
+        if not isinstance(outcome, Outcome):
+            return Result(row, status=outcome)
+        return Result(row, outcome, compare(outcome, reference))
+
+    def _outcome(self, row, repeats):
+        """Return the outcome of a row, or in words why there is none."""
+        weight = self._weight(row)
+        try:
+            case = self.load((*rows.quiet(self.case), *row.overrides))
+            found = solve(
+                case,
+                self.threads,
+                repeats,
+                progress=lambda fraction: self._tick(row, fraction * weight),
+            )
+        except CaseError as error:
+            found = f"{REFUSED}: {error.problems[0].reason}"
+        except DivergedError as error:
+            found = f"{DIVERGED}: {str(error).splitlines()[0]}"
+        except OutOfTime:
+            found = f"{LEFT_OUT}: no time left"
+        self._done += weight
+        return found
+
+    def _tick(self, row, part):
+        if monotonic() > self._end:
+            raise OutOfTime
+        if self.progress:
+            fraction = (self._done + part) / self._weights
+            self.progress.update(min(1.0, fraction), f"{row.method} {row.axis} {row.value:g}")
+
+    def _weight(self, row):
+        """Return the cost of a row in pairs of its sums, roughly."""
+        points = row.value if row.axis == "points" else self.scene.rods.points
+        return row.evaluations * (points**2 + BESIDE)
+
+    def _measured(self, outcome, seconds):
+        self._seconds_per_pair = seconds / (outcome.evaluations * (outcome.pairs + BESIDE))
+
+    def _predicted(self, row):
+        return self._seconds_per_pair * self._weight(row)
+
+
+def _own(section, errors):
+    """Return the error of a reference from that of the next best run.
+
+    In time: the whole difference, an upper bound. In space: a third of it, for order 2.
+    """
+    if section.axis != "points":
+        return errors
+    return Errors(*(None if value is None else value / 3.0 for value in vars(errors).values()))

@@ -1,0 +1,97 @@
+"""Error against run time, and against what was varied."""
+
+import numpy as np
+
+from rodsim.convergence.report import fitted_order
+from rodsim.errors import FileError, UsageError
+
+MARKS = {"rkc": ("o", "#0b4f8a"), "euler": ("s", "#d1660f"), "rk4": ("^", "#3a7d2c")}
+SPACE = {"points": ("D", "#8a3b7a"), "epsilon": ("v", "0.45")}
+DASHES = {"time": "-", "points": "--", "epsilon": ":"}
+TITLES = {
+    "time": "tolerance or step",
+    "points": "points at fixed epsilon",
+    "epsilon": "epsilon (sensitivity)",
+}
+
+
+def plot_study(study, path) -> None:
+    """Draw a work-precision diagram and the errors against what was varied, to a file."""
+    try:
+        from matplotlib.figure import Figure
+    except ImportError as error:
+        raise UsageError("the picture needs matplotlib: pip install 'rodsim[plot]'") from error
+    figure = Figure(figsize=(11, 4.8), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    draw_work_precision(left, study)
+    draw_orders(right, study)
+    figure.suptitle(study.case.title or "Error against run time")
+    try:
+        figure.savefig(path, dpi=140)
+    except (OSError, ValueError) as error:
+        raise FileError(f"{path}: cannot be drawn: {error}") from error
+
+
+def draw_work_precision(axis, study):
+    """Draw the largest position error over the wall time of the solve; return the axis."""
+    unit, time = study.case.units.length, "s"
+    for section in study.sections:
+        for method, part in _by_method(section):
+            seconds = [np.median(r.outcome.seconds) for r in part]
+            errors = [r.errors.position for r in part]
+            marker, colour = SPACE.get(section.axis) or MARKS[method]
+            label = f"{method}, {TITLES[section.axis]}"
+            axis.loglog(seconds, errors, DASHES[section.axis], marker=marker, c=colour, label=label)
+        if section.axis == "time" and section.own:
+            axis.axhline(section.own.position, c="0.6", lw=1, zorder=0)
+            axis.annotate("the reference is good to this", (0.98, section.own.position),
+                          xycoords=("axes fraction", "data"), ha="right", va="bottom",
+                          color="0.45", fontsize=8)  # fmt: skip
+    axis.set_xlabel(f"wall time of the solve ({time})")
+    axis.set_ylabel(f"largest position error at the end ({unit})")
+    return _finish(axis)
+
+
+def draw_orders(axis, study):
+    """Draw the errors over step, spacing or epsilon, all over the case's own; return the axis.
+
+    The legend tells the slope of each line, the observed order.
+    """
+    for section in study.sections:
+        for method, part in _by_method(section):
+            sizes = np.array([_relative_size(study, section, r) for r in part])
+            marker, colour = SPACE.get(section.axis) or MARKS[method]
+            order = fitted_order(section, method)
+            label = f"{method}, {_what(section)}" + (f": slope {order:.2f}" if order else "")
+            errors = [r.errors.position for r in part]
+            axis.loglog(sizes, errors, DASHES[section.axis], marker=marker, c=colour, label=label)
+    axis.set_xlabel("step / run, spacing / length, or epsilon / the case's own")
+    axis.set_ylabel(f"largest position error ({study.case.units.length})")
+    return _finish(axis)
+
+
+def _by_method(section):
+    """Yield (method, rows with errors above zero, in order of value)."""
+    done = [r for r in section.results if r.errors and r.errors.position > 0.0]
+    for method in dict.fromkeys(r.row.method for r in done):
+        chosen = [r for r in done if r.row.method == method]
+        yield method, sorted(chosen, key=lambda r: r.row.value)
+
+
+def _relative_size(study, section, result):
+    if section.axis == "epsilon":
+        return result.row.value / study.scene.epsilon
+    if section.axis == "points":
+        return 1.0 / result.outcome.scene.rods.segments.sum()
+    return 1.0 / result.outcome.steps
+
+
+def _what(section):
+    return {"time": "mean step", "points": "spacing", "epsilon": "epsilon"}[section.axis]
+
+
+def _finish(axis):
+    axis.grid(which="major", color="0.9")
+    axis.set_axisbelow(True)
+    axis.legend(frameon=False, fontsize=8)
+    return axis
