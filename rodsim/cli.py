@@ -13,15 +13,16 @@ import click
 import rodsim
 from rodsim.errors import RodsimError
 
-COMMANDS = (
+COMMANDS = (  # as the help lists them
     "new",
     "validate",
     "info",
     "run",
+    "resume",
     "energy",
     "converge",
     "schema",
-)  # as the help lists them
+)
 EXIT_CODES = """\b
 Exit codes:
    0  done
@@ -29,7 +30,7 @@ Exit codes:
    2  bad usage, or a case file missing, unreadable or invalid
    3  the run diverged
    4  an output or shape file missing, unreadable, locked or not ours, or a write failed
-  75  stopped early on purpose
+  75  stopped early on purpose: go on with rodsim resume
 """
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from rodsim.analysis.difference import position_errors, triad_angle
 from rodsim.elasticity import ENERGIES
-from rodsim.errors import DivergedError, StepFailure
+from rodsim.errors import StepFailure
 from rodsim.machine import Machine
 from rodsim.rods import Scene, State, build_scene
 

@@ -69,6 +69,10 @@ def _section(study, section):
             yield f"observed order of {method}: {order:.2f}"
 
 
+def _order(result):
+    return METHODS.index(result.row.method), -result.row.value
+
+
 def _cells(section, result, swims):
     head = [result.row.method, f"{result.row.value:.6g}"]
     if result.outcome is None:
@@ -117,11 +121,10 @@ def _named(fastest):
 class CsvRows:
     """Rows go to the file as they end: what an interrupted study has is kept."""
 
-    COLUMNS = (
-        "section method value status position_error relative_error rms_error triad_angle_degrees "
-        "energy_error speed_error seconds seconds_low seconds_high repeats steps rejected "
-        "evaluations pairs reference_error"
-    ).split()
+    COLUMNS = ("section", "method", "value", "status",
+               "position_error", "relative_error", "rms_error", "triad_angle_degrees",
+               "energy_error", "speed_error", "seconds", "seconds_low", "seconds_high", "repeats",
+               "steps", "rejected", "evaluations", "pairs", "reference_error")  # fmt: skip
 
     def __init__(self, path):
         self.path = path
