@@ -25,6 +25,7 @@ STAGES = {"euler": 1, "rk4": 4}
 SHARE = 0.9  # of the longest stable step
 MOST_SECONDS = 60.0
 TIGHTER = 1e-4
+FRAMES = 4
 
 
 @dataclass(frozen=True)
@@ -77,6 +78,9 @@ def run(case, folder: Path, **time):
     if table is not None:
         np.savetxt(folder / "rod.txt", table, fmt="%.17g")
     case["time"] = {**case["time"], **time}
+    step = case["time"].get("step")
+    count = round(case["time"]["end"] / step) if step else FRAMES
+    case["output"] = {"interval": -(-count // FRAMES) * (step or case["time"]["end"] / FRAMES)}
     summary, output = Summary(), folder / "out.h5"
     try:
         made = case_from_mapping(case, path=str(folder / "case.yaml"))
@@ -124,10 +128,8 @@ def fixed_step(case, method, limit, most, folder, reference, length) -> Cell:
     stretch = STAGES[method] * steps > most
     step = end / steps
     count = most // STAGES[method] if stretch else steps
-    settings = {"integrator": method, "step": step, "end": step * count, "tolerance": None}
-    without = {**case, "time": {k: v for k, v in case["time"].items() if k != "tolerance"}}
-    settings.pop("tolerance")
-    done = cell(*run(without, folder, **settings), None if stretch else reference, length)
+    settings = {"integrator": method, "step": step, "end": step * count}
+    done = cell(*run(case, folder, **settings), None if stretch else reference, length)
     if done.status == "finished" and stretch:
         return Cell("finished", evaluations=STAGES[method] * steps, stretch=True)
     return done

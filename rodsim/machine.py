@@ -1,8 +1,11 @@
 """The compiled parts of a run, put together for one case. Importing this compiles the kernels."""
 
+from functools import cached_property
+
 from rodsim.dynamics import RodSystem
 from rodsim.integrators import make_integrator
-from rodsim.integrators.limits import check_step
+from rodsim.integrators.limits import Limits, check_step, stability
+from rodsim.integrators.spectral import SpectralRadius
 from rodsim.threads import threads_for
 from rodsim.watch import Watch
 
@@ -14,8 +17,15 @@ class Machine:
         """``force``: let a fixed step be above its limit of stability."""
         self.case, self.force = case, force
         self.system = RodSystem(scene)
-        self.integrator = make_integrator(case.time, self.system)
-        self.watch = Watch(self.system, self.integrator, follow_rate=not force)
+        radius = SpectralRadius(self.system)  # one estimate serves all who need the fastest rate
+        self._radius = radius
+        self.integrator = make_integrator(case.time, self.system, radius)
+        self.watch = Watch(self.system, self.integrator, None if force else radius)
+
+    @cached_property
+    def limits(self) -> Limits:
+        """What each method can do from the initial state."""
+        return stability(self.system, self._radius)
 
     def threads(self, asked: int | None):
         """Return the context in which sums run with the threads this scene is worth."""
@@ -23,4 +33,4 @@ class Machine:
 
     def step_warnings(self) -> list:
         """Return problems of a fixed step near its limit; raises CaseError above it."""
-        return [] if self.force else check_step(self.case, self.system)
+        return [] if self.force else check_step(self.case, self.limits)

@@ -33,13 +33,18 @@ def describe_case(case) -> str:
     how = f"step {time.step:g}" if time.step else f"tolerance {time.tolerance:g}"
     frames = len(frame_times(time.end, case.interval))
     lines.append(f"time: to {time.end:g} {unit.time} by {time.integrator}, {how}; {frames} frames")
-    limits = stability(RodSystem(scene))
-    lines.append(f"fastest rate at t = 0: {limits.rate:.4g} 1/{unit.time}")
-    for name, step in limits.largest_steps.items():
-        lines.append(f"  {name}: stable up to a step of {step:.4g} {unit.time}")
-    lines.append("  rkc: any step; stages at a step of " + ", ".join(
-        f"{size:g}: {stages}" for size, stages in limits.stages.items()))  # fmt: skip
-    return "\n".join(lines)
+    return "\n".join([*lines, *describe_limits(stability(RodSystem(scene)), unit.time)])
+
+
+def describe_limits(limits, time_unit: str) -> list[str]:
+    """Return what is known of the step before a run: fastest rate, limits, stages of rkc."""
+    steps = ", ".join(f"{name} {step:.4g}" for name, step in limits.largest_steps.items())
+    stages = ", ".join(f"{size:g}: {count}" for size, count in limits.stages.items())
+    return [
+        f"fastest rate at t = 0: {limits.rate:.4g} 1/{time_unit}; "
+        f"largest stable step ({time_unit}): {steps}",
+        f"rkc takes any step; its stages at a step of {stages}",
+    ]
 
 
 def run_summary(summary, output) -> str:

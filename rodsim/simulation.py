@@ -39,6 +39,7 @@ def simulate(
     stop=str,
     progress=None,
     notify=warnings.warn,
+    inform=lambda limits: None,
     summary=None,
 ) -> Summary:
     """Run a case and stream it to an HDF5 file.
@@ -53,6 +54,7 @@ def simulate(
     stop : called after each step; returns why the run is to stop there, or an empty text.
     progress : object with ``update(fraction, note)``, or None for none.
     notify : called with the text of each warning.
+    inform : called before the first step with the scene's ``integrators.limits.Limits``.
     summary : a :class:`Summary` to fill in, for callers that want it after an error as well.
 
     Raises
@@ -69,6 +71,7 @@ def simulate(
     with machine.threads(threads):
         for problem in machine.step_warnings():
             notify(str(problem))
+        inform(machine.limits)
         recorder = Recorder(machine, started, compile_seconds + summary.compile_seconds)
         plan = plan_output(case, scene, capture(machine, recorder, scene.initial))
         with TrajectoryWriter.create(output, plan, overwrite) as recorder.writer:

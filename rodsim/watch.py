@@ -21,11 +21,12 @@ ADAPTIVE_REMEDY = (
 class Watch:
     """Checks that every value is finite, that no rod has left all bounds, and the fastest rate."""
 
-    def __init__(self, system, integrator, follow_rate: bool = True):
+    def __init__(self, system, integrator, radius=None):
+        """``radius``: the SpectralRadius that follows the rate of a fixed step, None to let it be."""
         self.system = system
         fixed = isinstance(integrator, FixedStep)
         self.remedy = FIXED_STEP_REMEDY if fixed else ADAPTIVE_REMEDY
-        self._rates = RateWatch(system, integrator) if fixed and follow_rate else None
+        self._rates = RateWatch(system, integrator, radius) if fixed and radius else None
         initial = system.scene.initial.position
         self.centre = initial.mean(axis=1, keepdims=True)
         extent = np.abs(initial - self.centre).max()

@@ -52,6 +52,10 @@ def run(case_path, output, overrides, threads, max_wall, overwrite, force, dry_r
     compiled = ensure_compiled(case, lambda line: quiet or click.echo(line, err=True))
     from rodsim.simulation import Summary, simulate
 
+    def inform(limits):
+        if not quiet:
+            click.echo("\n".join(reports.describe_limits(limits, case.units.time)), err=True)
+
     summary = Summary(compile_seconds=compiled)
     label = case.title or case_path.name
     with announce(summary, output, quiet), stop, make_progress(label, quiet) as progress:
@@ -63,6 +67,7 @@ def run(case_path, output, overrides, threads, max_wall, overwrite, force, dry_r
             force=force,
             stop=stop,
             notify=warn,
+            inform=inform,
             progress=progress,
             summary=summary,
         )

@@ -9,8 +9,11 @@ METHODS = {"rkc": RKC, "rk4": RK4, "euler": Euler}
 FIXED_STEP = {"rk4": RK4, "euler": Euler}
 
 
-def make_integrator(time, system) -> Integrator:
-    """Return the integrator of a case's ``time`` section for a system."""
+def make_integrator(time, system, radius=None) -> Integrator:
+    """Return the integrator of a case's ``time`` section for a system.
+
+    ``radius``: the SpectralRadius that an adaptive method shall use, or None for one of its own.
+    """
     if time.integrator in FIXED_STEP:
         return FIXED_STEP[time.integrator](system, time.step)
-    return METHODS[time.integrator](system, time.tolerance)
+    return METHODS[time.integrator](system, time.tolerance, radius)

@@ -86,12 +86,12 @@ class RKC:
 
     order = 3
 
-    def __init__(self, system: RodSystem, tolerance: float):
+    def __init__(self, system: RodSystem, tolerance: float, radius: SpectralRadius | None = None):
         self.system = system
         self.tolerance = tolerance
         self.accepted = self.rejected = self.max_stages = 0
         self.spectral_radius = math.nan
-        self._radius = SpectralRadius(system)
+        self._radius = radius or SpectralRadius(system)
         self._size = None
         self._rate = None  # velocities at the end of the last step
         self._previous = None  # (step size, error) of the last accepted and corrected step

@@ -198,7 +198,8 @@ def test_dry_run_and_info_describe_without_writing(here):
         assert result.exit_code == 0
         assert "rod ring: 200 points, closed" in result.stdout
         assert "fastest rate" in result.stdout
-        assert "euler: stable up to a step of 3.0" in result.stdout
+        assert "largest stable step (s): rk4 4.2" in result.stdout
+        assert "euler 3.0" in result.stdout
     assert list(here.iterdir()) == []
 
 

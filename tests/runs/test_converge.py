@@ -1,0 +1,173 @@
+"""``rodsim converge``: rows against truth of their own, the report, what interrupts it."""
+
+import csv
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from scenes import CONFIGS, final_state, load
+
+from rodsim.analysis.difference import position_errors, triad_angle
+from rodsim.cli import main
+from rodsim.convergence import rows
+from rodsim.convergence.report import fitted_order
+from rodsim.convergence.study import Study
+from rodsim.errors import UsageError
+
+SMALL = ("rods.rod.shape.points=25", "time.end=4e-4", "time.tolerance=1e-4")
+
+
+def study(*axes, config="open_rod", overrides=SMALL, **options):
+    made = Study(lambda more: load(config, *overrides, *more), axes, **options)
+    return made, list(made.run())
+
+
+@pytest.fixture(scope="module")
+def in_time():
+    return study("tolerance", "step")
+
+
+@pytest.fixture(scope="module")
+def in_space():
+    return study("points", "epsilon")
+
+
+@pytest.mark.compiled
+def test_an_error_is_the_distance_from_a_tighter_run(in_time):
+    made, _ = in_time
+    result = next(r for r in made.sections[0].results if r.row.value == pytest.approx(1e-3))
+    exact = final_state("open_rod", *SMALL, "time.tolerance=1e-10")[0]
+    loose = final_state("open_rod", *SMALL, "time.tolerance=1e-3")[0]
+    largest, rms = position_errors(loose.position, exact.position)
+    # Another reference, converged to 1e-3 of these errors.
+    assert result.errors.position == pytest.approx(largest, rel=1e-2)
+    assert result.errors.rms == pytest.approx(rms, rel=1e-2)
+    angle = triad_angle(loose.director, exact.director)
+    assert result.errors.angle == pytest.approx(angle, rel=1e-2)
+    assert result.errors.relative == pytest.approx(largest / (24 * np.pi / 40), rel=1e-2)
+
+
+@pytest.mark.compiled
+def test_orders_in_time_are_those_of_the_methods(in_time):
+    section = in_time[0].sections[0]
+    assert fitted_order(section, "euler") == pytest.approx(1.0, abs=0.1)
+    assert fitted_order(section, "rkc") > 1.8  # order 3, less where steps do not resolve the start
+    rk4 = [r.errors.position for r in section.results if r.row.method == "rk4"]
+    euler = [r.errors.position for r in section.results if r.row.method == "euler"]
+    assert max(rk4) < 1e-2 * min(euler)
+    assert section.own.position < 1e-2 * min(euler)
+
+
+@pytest.mark.compiled
+def test_order_in_space_is_two_and_the_finest_is_the_reference(in_space):
+    made = in_space[0]
+    points, epsilon = made.sections
+    assert [r.row.value for r in points.results] == [49, 25, 13, 7, 97]
+    assert fitted_order(points, "rkc") == pytest.approx(2.0, abs=0.4)  # few and coarse points
+    assert points.results[-1].errors is None
+    assert points.own.position == pytest.approx(points.results[0].errors.position / 3)
+    for r in points.results:  # length and epsilon stay
+        assert r.outcome.scene.rods.lengths[0] == pytest.approx(24 * np.pi / 40)
+        assert r.outcome.scene.epsilon == made.scene.epsilon
+    # Another blob is another answer: the more so, the farther from the case's own.
+    assert [r.row.value / made.scene.epsilon for r in epsilon.results] == list(rows.SENSITIVITY)
+    half, near, _, _ = (r.errors.position for r in epsilon.results)
+    assert half > near > 1e-3
+
+
+def test_the_longest_step_is_a_round_one_that_leads_to_the_end():
+    assert rows._steps(0.1, 2.7e-6) == 50_000
+    assert rows._steps(0.0785, 4.7e-6) == 39_250
+    five_periods = 0.07853981633974483  # no round step leads there: the fewest equal steps
+    assert rows._steps(five_periods, 4.7e-6) == 16_711
+
+
+def test_a_swimmer_has_a_speed_and_others_have_none():
+    swimmer, _ = study("epsilon", config="flagellum", overrides=(
+        "rods.tail.shape.points=12", "rods.tail.shape.spacing=0.5", "time.end=1e-3",
+        "fluid.epsilon.spacings=3"))  # fmt: skip
+    assert all(r.errors.speed > 0 for r in swimmer.sections[0].results)
+    rod, _ = study("epsilon", overrides=("rods.rod.shape.points=5", "time.end=1e-4"))
+    assert all(r.errors.speed is None for r in rod.sections[0].results)
+
+
+def test_a_row_that_cannot_be_is_named(in_time):
+    made, results = study("points", overrides=("rods.rod.shape.points=9", "time.end=1e-5",
+                                               "rods.rod.strain_twist=[1.3, 0, 20]"))  # fmt: skip
+    coarse = [r for _, r in results if r.row.value == 5]
+    assert coarse[0].outcome is None
+    assert coarse[0].status.startswith("refused: abs(Omega) ds = 3.1")
+
+
+def test_no_points_for_a_rod_from_a_file(tmp_path):
+    table = np.zeros((3, 12))
+    table[:, 2] = [0, 0.5, 1.0]
+    table[:, [3, 7, 11]] = 1.0
+    np.savetxt(tmp_path / "rod.txt", table)
+    shape = f"rods.rod.shape={{kind: file, path: {tmp_path / 'rod.txt'}, spacing: 0.5}}"
+    with pytest.raises(UsageError, match="rod 'rod' comes from a file"):
+        study("points", overrides=(shape, "fluid.epsilon=0.4", "time.end=1e-6"))
+
+
+def test_rows_that_do_not_fit_into_the_time_are_left_out():
+    made, results = study("step", overrides=("rods.rod.shape.points=5", "time.end=1e-3"),
+                          max_wall=1e-3 + 30.0)  # fmt: skip
+    made._end = 0.0
+    assert made._result(results[0][1].row, None, None).status.startswith("left out: would take")
+
+
+def call(*arguments):
+    return CliRunner().invoke(main, [*map(str, arguments)])
+
+
+COMMAND = ("converge", CONFIGS / "open_rod.yaml", "--set", "rods.rod.shape.points=5",
+           "--set", "time.end=1e-4", "--in", "tolerance,epsilon", "-q")  # fmt: skip
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_report_is_a_table_a_csv_and_a_picture(here):
+    done = call(*COMMAND, "-o", "report")
+    assert done.exit_code == 0, done.output
+    assert "fastest run of each method within" in done.stdout
+    assert "sensitivity to epsilon" in done.stdout
+    with open("report.csv") as stream:
+        table = list(csv.DictReader(stream))
+    assert [row["section"] for row in table] == ["tolerance"] * 9 + ["epsilon"] * 4
+    assert all(float(row["position_error"]) > 0 for row in table)
+    assert all(int(row["pairs"]) == 25 for row in table)
+    assert (here / "report.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_earlier_reports_are_renamed(here):
+    (here / "report.csv").write_text("mine")
+    done = call(*COMMAND, "-o", "report", "--set", "time.tolerance=0.5")
+    assert done.exit_code == 0, done.output
+    assert "the earlier report.csv is now report.1.csv" in done.stderr
+    assert (here / "report.1.csv").read_text() == "mine"
+
+
+def test_interrupted_it_keeps_what_it_has(here, monkeypatch):
+    plain = Study._outcome
+
+    def interrupted(self, row, repeats):
+        if row.axis == "epsilon":
+            raise KeyboardInterrupt
+        return plain(self, row, repeats)
+
+    monkeypatch.setattr(Study, "_outcome", interrupted)
+    done = call(*COMMAND, "-o", "report")
+    assert done.exit_code == 75
+    assert "reference: rkc at tolerance 1e-09" in done.stdout
+    assert "sensitivity" not in done.stdout
+    assert len((here / "report.csv").read_text().splitlines()) == 10
+
+
+def test_unknown_axis_is_refused(here):
+    done = call("converge", CONFIGS / "open_rod.yaml", "--in", "step,mesh")
+    assert done.exit_code == 2
+    assert "'mesh' is none of tolerance, step, points, epsilon" in done.stderr
