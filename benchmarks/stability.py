@@ -9,6 +9,7 @@ euler and rk4 take 0.9 of their longest stable step; where that is more than --m
 they run that many, and the cell gives what the whole run would cost.
 """
 
+import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -189,7 +190,7 @@ def main(quick, repeats, groups, methods, most):
         most = 1000
     rows = []
     names = [(group, name) for group in groups or SCENES for name in SCENES[group]]
-    with click.progressbar(names, label="scenes", file=click.get_text_stream("stderr")) as bar:
+    with click.progressbar(names, label="scenes", file=sys.stderr) as bar:
         for group, name in bar:
             found = measure(SCENES[group][name], methods, most)
             rows.append({"group": group, "scene": name, **found})

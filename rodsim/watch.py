@@ -22,7 +22,7 @@ class Watch:
     """Checks that every value is finite, that no rod has left all bounds, and the fastest rate."""
 
     def __init__(self, system, integrator, radius=None):
-        """``radius``: the SpectralRadius that follows the rate of a fixed step, None to let it be."""
+        """``radius``: the SpectralRadius that follows the rate of a fixed step, or None."""
         self.system = system
         fixed = isinstance(integrator, FixedStep)
         self.remedy = FIXED_STEP_REMEDY if fixed else ADAPTIVE_REMEDY

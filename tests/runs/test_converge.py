@@ -92,8 +92,8 @@ def test_a_swimmer_has_a_speed_and_others_have_none():
 
 
 def test_a_row_that_cannot_be_is_named(in_time):
-    made, results = study("points", overrides=("rods.rod.shape.points=9", "time.end=1e-5",
-                                               "rods.rod.strain_twist=[1.3, 0, 20]"))  # fmt: skip
+    _, results = study("points", overrides=("rods.rod.shape.points=9", "time.end=1e-5",
+                                            "rods.rod.strain_twist=[1.3, 0, 20]"))  # fmt: skip
     coarse = [r for _, r in results if r.row.value == 5]
     assert coarse[0].outcome is None
     assert coarse[0].status.startswith("refused: abs(Omega) ds = 3.1")
