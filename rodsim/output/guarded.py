@@ -72,7 +72,11 @@ class GuardedFile:
     def attributes(self, name: str) -> dict:
         """Return those attributes of a group that are single numbers or texts."""
         node = self._node(name)
-        found = {key: self._attribute(node, key) for key in node.attrs}
+        try:
+            keys = list(node.attrs)
+        except (OSError, RuntimeError, ValueError) as error:
+            raise self.damaged(f"{name} has no proper attributes ({error})") from error
+        found = {key: self._attribute(node, key) for key in keys}
         return {
             key: value if isinstance(value, str) else value.item()
             for key, value in found.items()
