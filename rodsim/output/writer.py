@@ -14,6 +14,7 @@ from rodsim.output.build import abandoned, build_file, trim
 from rodsim.output.checkpoint import CheckpointWriter
 from rodsim.output.layout import CLOCK, Plan
 from rodsim.output.paths import OutputLock, take_place, temporary_name
+from rodsim.output.rows import Rows
 from rodsim.output.vtkhdf import count_frames, show_frame
 
 
@@ -33,7 +34,8 @@ class TrajectoryWriter:
         self.path, self.times, self.renamed_to = path, plan.times, None
         self.committed = 0
         self._file, self._plan, self._lock = file, plan, lock
-        self._values = {s.where: file[f"{s.where}/value"] for s in plan.stored()}
+        self._values = {s.where: Rows(file[f"{s.where}/value"]) for s in plan.stored()}
+        self._time, self._step = Rows(file[f"{CLOCK}/time"]), Rows(file[f"{CLOCK}/step"])
         self._checkpoint = CheckpointWriter(file["checkpoint"])
 
     @classmethod
@@ -110,9 +112,9 @@ class TrajectoryWriter:
         rows |= {s.where: _row(s, observables, 0) for s in self._plan.observables_stored()}
         with self._writing() as file:
             for where, row in rows.items():
-                self._values[where][index] = row
-            file[f"{CLOCK}/time"][index] = self.times[index]
-            file[f"{CLOCK}/step"][index] = step
+                self._values[where].write(index, row)
+            self._time.write(index, self.times[index])
+            self._step.write(index, step)
             file.flush()
             self._commit(file, index)
 
