@@ -53,6 +53,12 @@ class DivergedError(RodsimError):
     exit_code = 3
 
 
+class StoppedError(RodsimError):
+    """The run was asked to stop; the message says by what and how to go on."""
+
+    exit_code = 75
+
+
 class FileError(RodsimError):
     """An output, frame or shape file is missing, unreadable, locked, not ours, or not writable."""
 
