@@ -13,6 +13,7 @@ import numpy as np
 
 from rodsim.errors import FileError
 from rodsim.output.guarded import GuardedFile
+from rodsim.output.rows import put
 
 SLOTS = ("a", "b")
 SEAL = "seal"
@@ -52,10 +53,10 @@ class CheckpointWriter:
             if (slot[name].shape, slot[name].dtype) != (array.shape, array.dtype):
                 raise ValueError(f"checkpoint: {name} changed its shape or type")
         for name, array in arrays.items():
-            _put(slot[name], array)
+            put(slot[name], array)
         self._file.flush()
         self._serial += 1
-        _put(slot[SEAL], np.array([self._serial, checksum(self._serial, arrays)], dtype=np.int64))
+        put(slot[SEAL], np.array([self._serial, checksum(self._serial, arrays)], dtype=np.int64))
         self._file.flush()
         self._turn = 1 - self._turn
 
@@ -102,7 +103,3 @@ def _arrays(state):
     """Return the entries as contiguous arrays, by name."""
     # ascontiguousarray alone would turn single numbers into lists of one
     return {name: np.asarray(value, order="C") for name, value in sorted(state.items())}
-
-
-def _put(dataset, array):
-    dataset.id.write(h5py.h5s.ALL, h5py.h5s.ALL, array)

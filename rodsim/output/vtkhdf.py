@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 
 from rodsim.output.layout import TRAJECTORY, Plan
+from rodsim.output.rows import Rows
 
 VERSION = (2, 0)
 CELLS = ("Vertices", "Lines", "Polygons", "Strips")  # VTK insists on all four
@@ -38,18 +39,23 @@ def build_view(file: h5py.File, plan: Plan) -> None:
     _add_steps(root.create_group("Steps"), len(plan.times), plan.points, data)
 
 
-def show_frame(view: h5py.Group, index: int, time: float) -> None:
-    """Make frame ``index``, which is on the disk, the last one visible, or correct its time."""
-    steps, values = view["Steps"], view["Steps/Values"]
-    if index >= len(values):
-        values.resize((index + 1,))
-    values[index] = time
-    steps.file.flush()
+class Steps:
+    """The frames that VTK sees. Every frame changes them, so their handles stay open."""
 
+    def __init__(self, view: h5py.Group):
+        self._values = view["Steps/Values"]
+        self._number = h5py.h5a.open(view["Steps"].id, b"NSteps")
 
-def count_frames(view: h5py.Group, frames: int) -> None:
-    """Set the number of visible frames; to be on the disk before ``show_frame`` of the last one."""
-    view["Steps"].attrs.modify("NSteps", np.int64(frames))
+    def count(self, frames: int) -> None:
+        """Set the number of visible frames; on the disk before ``show`` of the last one."""
+        self._number.write(np.array(frames, dtype=np.int64))
+
+    def show(self, index: int, time: float) -> None:
+        """Make frame ``index``, which is on the disk, the last one visible, or correct its time."""
+        if index >= len(self._values):
+            self._values.resize((index + 1,))
+        Rows(self._values).write(index, time)
+        self._values.file.flush()
 
 
 def show_frames(view: h5py.Group, times: np.ndarray) -> None:
@@ -59,7 +65,7 @@ def show_frames(view: h5py.Group, times: np.ndarray) -> None:
         return
     if len(values) > len(times):
         values.resize((len(times),))
-    count_frames(view, len(times))
+    Steps(view).count(len(times))
     view.file.flush()
     values.resize((len(times),))
     values[:] = times

@@ -15,8 +15,8 @@ from rodsim.output.build import abandoned, build_file, trim
 from rodsim.output.checkpoint import CheckpointWriter
 from rodsim.output.layout import CLOCK, Plan
 from rodsim.output.paths import OutputLock, take_place, temporary_name
-from rodsim.output.rows import Rows
-from rodsim.output.vtkhdf import count_frames, show_frame
+from rodsim.output.rows import Rows, put
+from rodsim.output.vtkhdf import Steps
 
 
 class TrajectoryWriter:
@@ -37,6 +37,7 @@ class TrajectoryWriter:
         self._file, self._plan, self._lock = file, plan, lock
         self._values = {s.where: Rows(file[f"{s.where}/value"]) for s in plan.stored()}
         self._time, self._step = Rows(file[f"{CLOCK}/time"]), Rows(file[f"{CLOCK}/step"])
+        self._number, self._visible = file["committed"], Steps(file["VTKHDF"])
         self._checkpoint = CheckpointWriter(file["checkpoint"])
 
     @classmethod
@@ -162,11 +163,11 @@ class TrajectoryWriter:
     def _commit(self, file, index):
         """Let the frame count; its data are written. Each flush keeps the order on the disk."""
         committed = max(self.committed, index + 1)
-        file["committed"][()] = committed
-        count_frames(file["VTKHDF"], committed)
+        put(self._number, np.array(committed, dtype=np.int64))
+        self._visible.count(committed)
         file.flush()
         self.committed = committed
-        show_frame(file["VTKHDF"], index, self.times[index])
+        self._visible.show(index, self.times[index])
 
     @contextmanager
     def writing(self):
