@@ -40,6 +40,7 @@ class CheckpointWriter:
     def __init__(self, group: h5py.Group):
         self._file = group.file
         self._slots = [{name: slot[name] for name in slot} for slot in _slots(group)]
+        self._kinds = _kinds(self._slots[0]) if self._slots else {}
         self._serial = max((int(slot[SEAL][0]) for slot in self._slots), default=0)
         whole = [_whole_serial(slot) for slot in self._slots]
         self._turn = whole.index(min(whole)) if whole else 0  # never over the newest whole one
@@ -49,8 +50,8 @@ class CheckpointWriter:
         arrays, slot = _arrays(state), self._slots[self._turn] if self._slots else {SEAL: None}
         if slot.keys() != {*arrays, SEAL}:
             raise ValueError(f"checkpoint has {sorted(arrays)}, its file {sorted(slot)}")
-        for name, array in arrays.items():
-            if (slot[name].shape, slot[name].dtype) != (array.shape, array.dtype):
+        for name, kind in _kinds(arrays).items():
+            if kind != self._kinds[name]:
                 raise ValueError(f"checkpoint: {name} changed its shape or type")
         for name, array in arrays.items():
             put(slot[name], array)
@@ -97,6 +98,10 @@ def _whole_serial(slot):
 
 def _slots(group):
     return [group[name] for name in SLOTS if name in group]
+
+
+def _kinds(arrays):
+    return {name: (array.shape, array.dtype) for name, array in arrays.items()}
 
 
 def _arrays(state):
