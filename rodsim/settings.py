@@ -25,6 +25,22 @@ def prepare() -> None:
     _let_llvm_vectorise()
     # GNU OpenMP's idle threads spin: with a busy neighbour each sum then takes milliseconds.
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+    _import_numba()
+
+
+def _import_numba():
+    """Import Numba while SciPy cannot be found.
+
+    Numba looks for SciPy's BLAS, for products of matrices in kernels. Ours have none, and where
+    SciPy is installed its import takes a third of the time to start.
+    """
+    if "scipy" in sys.modules:
+        return
+    sys.modules["scipy"] = None
+    try:
+        import numba.np.arraymath  # noqa: F401
+    finally:
+        del sys.modules["scipy"]
 
 
 def _let_llvm_vectorise():
