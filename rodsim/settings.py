@@ -6,6 +6,7 @@ import os
 import platform
 import sys
 import tempfile
+from importlib.metadata import version
 from pathlib import Path
 
 import rodsim
@@ -15,7 +16,7 @@ def prepare() -> None:
     """Choose the cache of compiled code and the threading layer; call before Numba is imported.
 
     The cache lies in the user's own folder, so a read-only install works, under a name made of
-    everything compiled code depends on: another version, source, Python or processor finds
+    everything compiled code depends on: another version, source, Python, Numba or processor finds
     nothing stale there. Variables that the user has set are left alone.
     """
     if "NUMBA_CACHE_DIR" not in os.environ:
@@ -86,7 +87,8 @@ def _fingerprint():
     digest = hashlib.sha256(rodsim.__version__.encode())
     for source in sorted(Path(rodsim.__file__).parent.rglob("*.py")):
         digest.update(source.read_bytes())
-    digest.update(f"{sys.version} {platform.machine()} {_processor()}".encode())
+    versions = [version(name) for name in ("numba", "llvmlite", "numpy")]
+    digest.update(f"{versions} {sys.version} {platform.machine()} {_processor()}".encode())
     return digest.hexdigest()[:16]
 
 

@@ -3,35 +3,96 @@
 Code that Numba has just compiled and the same code read from its cache can differ in the last bit
 of a sum (the parallel part is optimised once more when it is linked). A run must not depend on
 whether it was the first, so the command never runs what it compiles: it reads it from the cache.
+
+A cache that a full disk, a power cut or a stray hand has damaged would crash Numba. The list of
+what was compiled holds the checksum of every file; where one does not fit, all is compiled anew.
 """
 
+import json
 import os
-import subprocess
 import sys
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from time import perf_counter
+from zlib import crc32
+
+LIST = "compiled.json"
 
 
 def ensure_compiled(case, say) -> float:
     """Compile what ``case`` needs if this installation has not yet; return the seconds it took.
 
     Call after ``settings.prepare``. ``say`` is called with a line for the user before the wait.
+    Of several processes that come at once one compiles, and the others wait for it.
     """
     if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
         return 0.0
+    folder = Path(os.environ["NUMBA_CACHE_DIR"])
     variant = (case.fluid.blob, str(int(case.plane is not None)), str(int(bool(case.tracers))))
-    marker = Path(os.environ["NUMBA_CACHE_DIR"]) / f"compiled-{'-'.join(variant)}"
-    if marker.exists():
+    if is_compiled(folder, variant):
         return 0.0
+    import subprocess  # what is compiled already has no use for it
+
     say("compiling for this kind of scene, once; some seconds")
     start = perf_counter()
-    done = subprocess.run(
-        [sys.executable, "-m", "rodsim.warmup", *variant], capture_output=True, check=False
-    )
-    if done.returncode == 0:
-        marker.parent.mkdir(parents=True, exist_ok=True)
-        marker.touch()
+    with _alone(folder):
+        if not is_compiled(folder, variant):
+            if not _undamaged(folder):
+                _clear(folder)
+            command = [sys.executable, "-m", "rodsim.warmup", *variant]
+            if subprocess.run(command, capture_output=True, check=False).returncode == 0:
+                note_compiled(folder, variant)
     return perf_counter() - start
+
+
+def is_compiled(folder: Path, variant) -> bool:
+    """Tell whether a kind of scene is listed as compiled, and all files are as they were."""
+    return "-".join(variant) in _listed(folder)["variants"] and _undamaged(folder)
+
+
+def note_compiled(folder: Path, variant) -> None:
+    """List a kind of scene as compiled, and every file of compiled code with its checksum."""
+    variants = {*_listed(folder)["variants"], "-".join(variant)}
+    files = {str(f.relative_to(folder)): crc32(f.read_bytes()) for f in folder.rglob("*.nbc")}
+    new = folder / f"{LIST}.{os.getpid()}"
+    new.write_text(json.dumps({"variants": sorted(variants), "files": files}))
+    new.replace(folder / LIST)
+
+
+def _listed(folder):
+    try:
+        found = json.loads((folder / LIST).read_text())
+        return {"variants": list(found["variants"]), "files": dict(found["files"])}
+    except (OSError, ValueError, KeyError, TypeError):
+        return {"variants": [], "files": {}}
+
+
+def _undamaged(folder):
+    """Check the listed files; an index changes with every new kernel, but is a whole pickle."""
+    try:
+        listed = _listed(folder)["files"].items()
+        whole = all(crc32((folder / name).read_bytes()) == crc for name, crc in listed)
+        return whole and all(f.read_bytes().endswith(b".") for f in folder.rglob("*.nbi"))
+    except OSError:
+        return False
+
+
+def _clear(folder):
+    for pattern in (LIST, "*.nbi", "*.nbc"):
+        for file in folder.rglob(pattern):
+            file.unlink(missing_ok=True)
+
+
+@contextmanager
+def _alone(folder):
+    """Hold a lock that the system takes back should this process die; none where it has none."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / "lock").open("w") as lock:
+        with suppress(ImportError, OSError):
+            import fcntl
+
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
 
 
 def main(blob: str, planar: str, tracers: str) -> None:
