@@ -16,6 +16,8 @@ from pathlib import Path
 from time import perf_counter
 from zlib import crc32
 
+from rodsim.settings import fingerprint
+
 LIST = "compiled.json"
 
 
@@ -29,42 +31,51 @@ def ensure_compiled(case, say) -> float:
         return 0.0
     folder = Path(os.environ["NUMBA_CACHE_DIR"])
     variant = (case.fluid.blob, str(int(case.plane is not None)), str(int(bool(case.tracers))))
-    if is_compiled(folder, variant):
+    # A folder that the user has set can be shared by several versions and installations.
+    kind = "-".join((fingerprint(), *variant))
+    if is_compiled(folder, kind):
         return 0.0
     import subprocess  # what is compiled already has no use for it
 
     say("compiling for this kind of scene, once; some seconds")
     start = perf_counter()
     with _alone(folder):
-        if not is_compiled(folder, variant):
-            if not _undamaged(folder):
+        if not is_compiled(folder, kind):
+            if _is_ours(folder, kind) and not _undamaged(folder):
                 _clear(folder)
             command = [sys.executable, "-m", "rodsim.warmup", *variant]
             if subprocess.run(command, capture_output=True, check=False).returncode == 0:
-                note_compiled(folder, variant)
+                note_compiled(folder, kind)
     return perf_counter() - start
 
 
-def is_compiled(folder: Path, variant) -> bool:
+def is_compiled(folder: Path, kind: str) -> bool:
     """Tell whether a kind of scene is listed as compiled, and all files are as they were."""
-    return "-".join(variant) in _listed(folder)["variants"] and _undamaged(folder)
+    whole = not _is_ours(folder, kind) or _undamaged(folder)
+    return whole and kind in _listed(folder)["kinds"]
 
 
-def note_compiled(folder: Path, variant) -> None:
+def note_compiled(folder: Path, kind: str) -> None:
     """List a kind of scene as compiled, and every file of compiled code with its checksum."""
-    variants = {*_listed(folder)["variants"], "-".join(variant)}
-    files = {str(f.relative_to(folder)): crc32(f.read_bytes()) for f in folder.rglob("*.nbc")}
+    kinds = {*_listed(folder)["kinds"], kind}
+    codes = folder.rglob("*.nbc") if _is_ours(folder, kind) else ()
+    files = {str(f.relative_to(folder)): crc32(f.read_bytes()) for f in codes}
     new = folder / f"{LIST}.{os.getpid()}"
-    new.write_text(json.dumps({"variants": sorted(variants), "files": files}))
+    new.write_text(json.dumps({"kinds": sorted(kinds), "files": files}))
     new.replace(folder / LIST)
+
+
+def _is_ours(folder, kind):
+    """Tell a folder of this installation from one that the user has set, for whatever else."""
+    return kind.startswith(f"{folder.name}-")
 
 
 def _listed(folder):
     try:
         found = json.loads((folder / LIST).read_text())
-        return {"variants": list(found["variants"]), "files": dict(found["files"])}
+        return {"kinds": list(found["kinds"]), "files": dict(found["files"])}
     except (OSError, ValueError, KeyError, TypeError):
-        return {"variants": [], "files": {}}
+        return {"kinds": [], "files": {}}
 
 
 def _undamaged(folder):

@@ -5,17 +5,21 @@ import pytest
 from rodsim import settings
 from rodsim.warmup import LIST, is_compiled, note_compiled
 
-RING, PLANE = ("algebraic7", "0", "0"), ("algebraic7", "1", "0")
+RING, PLANE = "here-algebraic7-0-0", "here-algebraic7-1-0"
 
 
 @pytest.fixture
 def folder(tmp_path):
     """A cache of one kernel: an index, which is a pickle, and compiled code."""
-    (tmp_path / "sums").mkdir()
-    (tmp_path / "sums" / "sum.nbi").write_bytes(b"\x80\x04index.")
-    (tmp_path / "sums" / "sum.1.nbc").write_bytes(b"\x80\x04machine code.")
-    note_compiled(tmp_path, RING)
-    return tmp_path
+    return fill(tmp_path / "here")
+
+
+def fill(folder):
+    (folder / "sums").mkdir(parents=True)
+    (folder / "sums" / "sum.nbi").write_bytes(b"\x80\x04index.")
+    (folder / "sums" / "sum.1.nbc").write_bytes(b"\x80\x04machine code.")
+    note_compiled(folder, RING)
+    return folder
 
 
 def test_only_what_is_listed_is_compiled(folder):
@@ -51,6 +55,12 @@ def test_a_broken_cache_is_not_compiled(folder, name, contents):
     if contents is not None:
         (folder / name).write_bytes(contents)
     assert not is_compiled(folder, RING)
+
+
+def test_in_a_folder_of_the_user_the_files_of_others_do_not_count(tmp_path):
+    folder = fill(tmp_path / "mine")
+    (folder / "sums" / "sum.nbi").write_bytes(b"what another program keeps there")
+    assert is_compiled(folder, RING)
 
 
 def test_another_processor_source_or_version_has_a_cache_of_its_own(tmp_path, monkeypatch):
