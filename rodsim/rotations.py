@@ -16,11 +16,10 @@ SERIES_UP_TO = 1.0  # squared angle: there the next terms of the series are belo
 @inline
 def _series(angle2):
     """Return sin(a)/a and (1 - cos(a))/a^2 from a^2 <= 1, by their power series."""
-    a = 1.0 - angle2 / 306.0 * (1.0 - angle2 / 380.0)
-    b = 1.0 - angle2 / 342.0 * (1.0 - angle2 / 420.0)
-    for n in (16, 14, 12, 10, 8, 6, 4, 2):
-        a = 1.0 - angle2 / (n * (n + 1.0)) * a
-        b = 1.0 - angle2 / ((n + 1.0) * (n + 2.0)) * b
+    a = b = 1.0
+    for n in (20, 18, 16, 14, 12, 10, 8, 6, 4, 2):  # unrolled: the quotients are constants
+        a = 1.0 - angle2 * (1.0 / (n * (n + 1.0))) * a
+        b = 1.0 - angle2 * (1.0 / ((n + 1.0) * (n + 2.0))) * b
     return a, 0.5 * b
 
 

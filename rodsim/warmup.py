@@ -3,39 +3,107 @@
 Code that Numba has just compiled and the same code read from its cache can differ in the last bit
 of a sum (the parallel part is optimised once more when it is linked). A run must not depend on
 whether it was the first, so the command never runs what it compiles: it reads it from the cache.
+
+A cache that a full disk, a power cut or a stray hand has damaged would crash Numba. The list of
+what was compiled holds the checksum of every file; where one does not fit, all is compiled anew.
 """
 
+import json
 import os
-import subprocess
 import sys
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from time import perf_counter
+from zlib import crc32
+
+from rodsim.settings import fingerprint
+
+LIST = "compiled.json"
 
 
 def ensure_compiled(case, say) -> float:
     """Compile what ``case`` needs if this installation has not yet; return the seconds it took.
 
     Call after ``settings.prepare``. ``say`` is called with a line for the user before the wait.
+    Of several processes that come at once one compiles, and the others wait for it.
     """
     if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
         return 0.0
+    folder = Path(os.environ["NUMBA_CACHE_DIR"])
     variant = (case.fluid.blob, str(int(case.plane is not None)), str(int(bool(case.tracers))))
-    from rodsim.settings import fingerprint
-
     # A folder that the user has set can be shared by several versions and installations.
-    name = "-".join(("compiled", fingerprint(), *variant))
-    marker = Path(os.environ["NUMBA_CACHE_DIR"]) / name
-    if marker.exists():
+    kind = "-".join((fingerprint(), *variant))
+    if is_compiled(folder, kind):
         return 0.0
+    import subprocess  # what is compiled already has no use for it
+
     say("compiling for this kind of scene, once; some seconds")
     start = perf_counter()
-    done = subprocess.run(
-        [sys.executable, "-m", "rodsim.warmup", *variant], capture_output=True, check=False
-    )
-    if done.returncode == 0:
-        marker.parent.mkdir(parents=True, exist_ok=True)
-        marker.touch()
+    with _alone(folder):
+        if not is_compiled(folder, kind):
+            if _is_ours(folder, kind) and not _undamaged(folder):
+                _clear(folder)
+            command = [sys.executable, "-m", "rodsim.warmup", *variant]
+            if subprocess.run(command, capture_output=True, check=False).returncode == 0:
+                note_compiled(folder, kind)
     return perf_counter() - start
+
+
+def is_compiled(folder: Path, kind: str) -> bool:
+    """Tell whether a kind of scene is listed as compiled, and all files are as they were."""
+    whole = not _is_ours(folder, kind) or _undamaged(folder)
+    return whole and kind in _listed(folder)["kinds"]
+
+
+def note_compiled(folder: Path, kind: str) -> None:
+    """List a kind of scene as compiled, and every file of compiled code with its checksum."""
+    kinds = {*_listed(folder)["kinds"], kind}
+    codes = folder.rglob("*.nbc") if _is_ours(folder, kind) else ()
+    files = {str(f.relative_to(folder)): crc32(f.read_bytes()) for f in codes}
+    new = folder / f"{LIST}.{os.getpid()}"
+    new.write_text(json.dumps({"kinds": sorted(kinds), "files": files}))
+    new.replace(folder / LIST)
+
+
+def _is_ours(folder, kind):
+    """Tell a folder of this installation from one that the user has set, for whatever else."""
+    return kind.startswith(f"{folder.name}-")
+
+
+def _listed(folder):
+    try:
+        found = json.loads((folder / LIST).read_text())
+        return {"kinds": list(found["kinds"]), "files": dict(found["files"])}
+    except (OSError, ValueError, KeyError, TypeError):
+        return {"kinds": [], "files": {}}
+
+
+def _undamaged(folder):
+    """Check the listed files; an index changes with every new kernel, but is a whole pickle."""
+    try:
+        listed = _listed(folder)["files"].items()
+        whole = all(crc32((folder / name).read_bytes()) == crc for name, crc in listed)
+        return whole and all(f.read_bytes().endswith(b".") for f in folder.rglob("*.nbi"))
+    except OSError:
+        return False
+
+
+def _clear(folder):
+    for pattern in (LIST, "*.nbi", "*.nbc"):
+        for file in folder.rglob(pattern):
+            file.unlink(missing_ok=True)
+
+
+@contextmanager
+def _alone(folder):
+    """Hold a lock that the system takes back should this process die; none where it has none."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / "lock").open("w") as lock:
+        with suppress(ImportError, OSError):
+            import fcntl
+
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
 
 
 def main(blob: str, planar: str, tracers: str) -> None:

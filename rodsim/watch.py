@@ -6,6 +6,7 @@ from rodsim.errors import DivergedError, StepFailure
 from rodsim.integrators.fixed import FixedStep
 from rodsim.integrators.limits import RateWatch
 from rodsim.integrators.step import Step
+from rodsim.jit import MAT, TRIADS, kernel
 from rodsim.rods.state import State
 
 FARTHEST = 1e3  # lengths of the scene: no rod drives itself that far in a run that works
@@ -16,6 +17,16 @@ FIXED_STEP_REMEDY = (
 ADAPTIVE_REMEDY = (
     "the motion is beyond the resolution of the rods: use more points, or a smaller time.tolerance"
 )
+
+
+@kernel(f"boolean({MAT}, {TRIADS}, {MAT}, float64)")
+def _in_order(X, D, centre, farthest):
+    """Tell whether all is finite and within bounds: one pass, after every step."""
+    for c in range(3):
+        for k in range(np.uint64(X.shape[1])):
+            if not abs(X[c, k] - centre[c, 0]) <= farthest:
+                return False
+    return np.isfinite(D).all()
 
 
 class Watch:
@@ -49,6 +60,10 @@ class Watch:
     def check(self, step: Step) -> None:
         """Raise DivergedError if the state at the end of a step means nothing."""
         state = step.end
+        if _in_order(state.position, state.director, self.centre, self.farthest):
+            if self._rates:
+                self._rates.follow(step)
+            return
         for name, values in (("position", state.position), ("director", state.director)):
             finite = np.isfinite(values).reshape(-1, values.shape[-1]).all(axis=0)
             if not finite.all():

@@ -39,7 +39,7 @@ SMALLEST, LARGEST = 1e-200, 1e200
 class Model(BaseModel):
     """A section of the case file: immutable, no unknown keys."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", validate_default=False)
+    model_config = ConfigDict(frozen=True, extra="forbid", validate_default=False, defer_build=True)
 
 
 def quantity(dimension: str, description: str, **more: Any) -> Any:

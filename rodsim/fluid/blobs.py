@@ -20,9 +20,14 @@ BLOBS = {"algebraic7": ALGEBRAIC7, "algebraic9": ALGEBRAIC9}
 
 
 @inline
-def stokeslet_scalars(blob, r2, e2):
-    """Return (H1, H2, Q) times 8 pi at squared distance r2, squared blob size e2."""
-    inverse = 1.0 / math.sqrt(r2 + e2)
+def inverse_distance(r2, e2):
+    """Return 1/R: one square root and one division a pair, from which all scalars follow."""
+    return 1.0 / math.sqrt(r2 + e2)
+
+
+@inline
+def stokeslet_scalars(blob, inverse, e2):
+    """Return (H1, H2, Q) times 8 pi at 1/R = ``inverse``, squared blob size e2."""
     inverse2 = inverse * inverse
     inverse3 = inverse * inverse2
     p = e2 * inverse2
@@ -36,10 +41,10 @@ def stokeslet_scalars(blob, r2, e2):
 
 
 @inline
-def dipole_scalars(blob, r2, e2):
-    """Return (D1, D2) times 8 pi at squared distance r2, squared blob size e2."""
-    inverse2 = 1.0 / (r2 + e2)
-    inverse3 = inverse2 * math.sqrt(inverse2)
+def dipole_scalars(blob, inverse, e2):
+    """Return (D1, D2) times 8 pi at 1/R = ``inverse``, squared blob size e2."""
+    inverse2 = inverse * inverse
+    inverse3 = inverse * inverse2
     p = e2 * inverse2
     if blob == ALGEBRAIC7:
         return (

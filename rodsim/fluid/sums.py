@@ -7,9 +7,10 @@ With r = x - X_k, point force g_k and point torque m_k on the fluid,
     p(x) =      sum_k (g.r) Q                                                       (62)
 
 Threads share out the targets; the sum over sources is serial in each, so the result does not
-depend on the number of threads. The loops are specialised at compile time for the blob and for
-targets that do not need w; a planar scene has a loop of its own, over what is not 0 there. What a
-scene does not use is never compiled.
+depend on the number of threads. One loop is specialised at compile time for the blob, for targets
+that do not need w, and for a plane of constant x, where g_x = m_y = m_z = 0 and only u_y, u_z, w_x
+are not 0: the lines under ``if not planar`` are what the third dimension adds. What a scene does
+not use is never compiled.
 
 The kernels take (targets, sources, loads, epsilon, viscosity, out): targets (3, T), sources (3, N),
 loads (6, N) with g in rows 0-2 and m in rows 3-5; out (6, T): u in rows 0-2, w in rows 3-5, or
@@ -21,78 +22,68 @@ from functools import lru_cache
 
 from numba import prange
 
-from rodsim.fluid.blobs import ALGEBRAIC7, ALGEBRAIC9, dipole_scalars, stokeslet_scalars
+from rodsim.fluid.blobs import (
+    ALGEBRAIC7,
+    ALGEBRAIC9,
+    dipole_scalars,
+    inverse_distance,
+    stokeslet_scalars,
+)
 from rodsim.jit import parallel_kernel
 
 EIGHT_PI = 8.0 * math.pi
 
 
-def _spatial_kernel(blob, angular):
-    """Make the sum for any scene, with or without w."""
+def _sum(blob, planar, angular):
+    """Make the sum of a blob: for any scene or a planar one, with or without w."""
 
     @parallel_kernel
-    def spatial_sum(targets, sources, loads, epsilon, viscosity, out):
+    def fused_sum(targets, sources, loads, epsilon, viscosity, out):
         e2 = epsilon * epsilon
         scale = 1.0 / (EIGHT_PI * viscosity)
         for i in prange(targets.shape[1]):
             x, y, z = targets[0, i], targets[1, i], targets[2, i]
             ux, uy, uz, wx, wy, wz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
             for k in range(sources.shape[1]):
-                rx, ry, rz = x - sources[0, k], y - sources[1, k], z - sources[2, k]
-                gx, gy, gz = loads[0, k], loads[1, k], loads[2, k]
-                mx, my, mz = loads[3, k], loads[4, k], loads[5, k]
-                r2 = rx * rx + ry * ry + rz * rz
-                h1, h2, q = stokeslet_scalars(blob, r2, e2)
-                along = h2 * (gx * rx + gy * ry + gz * rz)
+                ry, rz = y - sources[1, k], z - sources[2, k]
+                gy, gz, mx = loads[1, k], loads[2, k], loads[3, k]
+                r2 = ry * ry + rz * rz
+                gr = gy * ry + gz * rz
+                if not planar:
+                    rx = x - sources[0, k]
+                    gx, my, mz = loads[0, k], loads[4, k], loads[5, k]
+                    r2 += rx * rx
+                    gr += gx * rx
+                inverse = inverse_distance(r2, e2)
+                h1, h2, q = stokeslet_scalars(blob, inverse, e2)
+                along = h2 * gr
                 q *= 0.5
-                ux += gx * h1 + along * rx + q * (my * rz - mz * ry)
-                uy += gy * h1 + along * ry + q * (mz * rx - mx * rz)
-                uz += gz * h1 + along * rz + q * (mx * ry - my * rx)
+                uy += gy * h1 + along * ry - q * (mx * rz)
+                uz += gz * h1 + along * rz + q * (mx * ry)
+                if not planar:
+                    ux += gx * h1 + along * rx + q * (my * rz - mz * ry)
+                    uy += q * (mz * rx)
+                    uz -= q * (my * rx)
                 if angular:
-                    d1, d2 = dipole_scalars(blob, r2, e2)
+                    d1, d2 = dipole_scalars(blob, inverse, e2)
                     d1 *= 0.25
-                    axial = 0.25 * d2 * (mx * rx + my * ry + mz * rz)
-                    wx += q * (gy * rz - gz * ry) + d1 * mx + axial * rx
-                    wy += q * (gz * rx - gx * rz) + d1 * my + axial * ry
-                    wz += q * (gx * ry - gy * rx) + d1 * mz + axial * rz
+                    wx += q * (gy * rz - gz * ry) + d1 * mx
+                    if not planar:
+                        axial = 0.25 * d2 * (mx * rx + my * ry + mz * rz)
+                        wx += axial * rx
+                        wy += q * (gz * rx - gx * rz) + d1 * my + axial * ry
+                        wz += q * (gx * ry - gy * rx) + d1 * mz + axial * rz
             out[0, i], out[1, i], out[2, i] = scale * ux, scale * uy, scale * uz
             if angular:
                 out[3, i], out[4, i], out[5, i] = scale * wx, scale * wy, scale * wz
 
-    return spatial_sum
-
-
-def _planar_kernel(blob):
-    """Make the sum for a plane of constant x, g_x = m_y = m_z = 0: only u_y, u_z, w_x are not 0."""
-
-    @parallel_kernel
-    def planar_sum(targets, sources, loads, epsilon, viscosity, out):
-        e2 = epsilon * epsilon
-        scale = 1.0 / (EIGHT_PI * viscosity)
-        for i in prange(targets.shape[1]):
-            y, z = targets[1, i], targets[2, i]
-            uy, uz, wx = 0.0, 0.0, 0.0
-            for k in range(sources.shape[1]):
-                ry, rz = y - sources[1, k], z - sources[2, k]
-                gy, gz, mx = loads[1, k], loads[2, k], loads[3, k]
-                r2 = ry * ry + rz * rz
-                h1, h2, q = stokeslet_scalars(blob, r2, e2)
-                along = h2 * (gy * ry + gz * rz)
-                q *= 0.5
-                uy += gy * h1 + along * ry - q * mx * rz
-                uz += gz * h1 + along * rz + q * mx * ry
-                d1, _ = dipole_scalars(blob, r2, e2)
-                wx += q * (gy * rz - gz * ry) + 0.25 * d1 * mx
-            out[0, i], out[1, i], out[2, i] = 0.0, scale * uy, scale * uz
-            out[3, i], out[4, i], out[5, i] = scale * wx, 0.0, 0.0
-
-    return planar_sum
+    return fused_sum
 
 
 # Globals, so that compiled functions may call them and still be read from Numba's cache.
-SPATIAL_7, SPATIAL_9 = (_spatial_kernel(blob, True) for blob in (ALGEBRAIC7, ALGEBRAIC9))
-PLANAR_7, PLANAR_9 = (_planar_kernel(blob) for blob in (ALGEBRAIC7, ALGEBRAIC9))
-FLOW_7, FLOW_9 = (_spatial_kernel(blob, False) for blob in (ALGEBRAIC7, ALGEBRAIC9))
+SPATIAL_7, SPATIAL_9 = (_sum(blob, False, True) for blob in (ALGEBRAIC7, ALGEBRAIC9))
+PLANAR_7, PLANAR_9 = (_sum(blob, True, True) for blob in (ALGEBRAIC7, ALGEBRAIC9))
+FLOW_7, FLOW_9 = (_sum(blob, False, False) for blob in (ALGEBRAIC7, ALGEBRAIC9))
 
 
 def velocity_kernel(blob, planar=False, angular=True):
@@ -116,7 +107,8 @@ def pressure_kernel(blob):
             total = 0.0
             for k in range(sources.shape[1]):
                 rx, ry, rz = x - sources[0, k], y - sources[1, k], z - sources[2, k]
-                _, _, q = stokeslet_scalars(blob, rx * rx + ry * ry + rz * rz, e2)
+                inverse = inverse_distance(rx * rx + ry * ry + rz * rz, e2)
+                _, _, q = stokeslet_scalars(blob, inverse, e2)
                 total += q * (loads[0, k] * rx + loads[1, k] * ry + loads[2, k] * rz)
             out[i] = total / EIGHT_PI
 

@@ -13,6 +13,8 @@ interval of RKC2, at all of the stage numbers (2 to 50) and ratios of sizes (0.5
 
 import numpy as np
 
+from rodsim.integrators.passes import defect, weighted_sum
+
 MEMORY = 0.5  # 0: unstable where steps grow by a quarter; 1: more errors of stiff modes, and lag
 TREND = 0.3  # share of the change of y''' that is carried on; 0.5 can be unstable
 
@@ -38,23 +40,21 @@ class Defect:
             return factor * third
         oldest, earlier = self._behind[1]
         trend = TREND * (before + size) / (before + earlier) * min(1.0, earlier / before) ** 3
-        return factor * ((1.0 + trend) * third - trend * oldest)
+        g = np.empty_like(third)
+        weighted_sum(factor * (1.0 + trend), third, -factor * trend, oldest, g)
+        return g
 
-    def remaining(self, size, c, y, f0, f1, g) -> np.ndarray:
-        """Return the error left in a trial step: C h^3 y''' - h g.
+    def remaining(self, size, c, y, f0, f1, g, weights) -> float:
+        """Return the weighted rms of the error left in a trial step, C h^3 y''' - h g.
 
         h^3 y''' = [h (f_0 + f_1)/2 - y + m h g]/(1/12 + m C), m = MEMORY, for the increment y
         with g in it; without g it is the same with m = 1, g = 0.
         """
-        third = 0.5 * size * (f0 + f1) - y
-        if g is None:
-            third /= 1.0 / 12.0 + c
-            left = c * third
-        else:
-            third = (third + MEMORY * size * g) / (1.0 / 12.0 + MEMORY * c)
-            left = c * third - size * g
-        self._trial = third / size**3, size
-        return left
+        memory, g = (1.0, np.zeros_like(y)) if g is None else (MEMORY, g)
+        third = np.empty_like(y)
+        error = defect(size, c, memory, y, f0, f1, g, weights, third)
+        self._trial = third, size
+        return error
 
     def accept(self) -> None:
         """Keep the step under trial."""

@@ -183,10 +183,8 @@ class RKC:
 
     def _error(self, size, c, y, f0, f1, g):
         """Return the local error that the correction has left, over the tolerance."""
-        n = self.system.rod_size
-        with np.errstate(all="ignore"):
-            left = self._defect.remaining(size, c, y, f0, f1, g)[:n] * self.system.weights[:n]
-            return float(np.sqrt(np.mean(np.square(left)))) / self.tolerance
+        weights = self.system.weights[: self.system.rod_size]
+        return self._defect.remaining(size, c, y, f0, f1, g, weights) / self.tolerance
 
     def _grow(self, size, error):
         """Choose the next size by the filter H211b from the last two sizes and errors.

@@ -5,7 +5,7 @@ import pytest
 import twins
 from scipy.integrate import quad
 
-from rodsim.fluid.blobs import BLOBS, dipole_scalars, stokeslet_scalars
+from rodsim.fluid.blobs import BLOBS, dipole_scalars, inverse_distance, stokeslet_scalars
 
 EPSILON = 0.37
 DISTANCES = [0.05, 0.4, 1.3, 6.0]
@@ -14,9 +14,11 @@ both_blobs = pytest.mark.parametrize("blob", BLOBS)
 
 def fast_scalars(blob, r, e):
     """The product's formulas, run as plain Python."""
-    stokeslet = getattr(stokeslet_scalars, "py_func", stokeslet_scalars)
-    dipole = getattr(dipole_scalars, "py_func", dipole_scalars)
-    values = *stokeslet(BLOBS[blob], r * r, e * e), *dipole(BLOBS[blob], r * r, e * e)
+    inverse, stokeslet, dipole = (
+        getattr(f, "py_func", f) for f in (inverse_distance, stokeslet_scalars, dipole_scalars)
+    )
+    where = BLOBS[blob], inverse(r * r, e * e), e * e
+    values = *stokeslet(*where), *dipole(*where)
     return np.array(values) / (8 * np.pi)
 
 

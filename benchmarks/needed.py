@@ -1,0 +1,154 @@
+"""What is saved by computing and storing only what a scene needs: with and without, one by one."""
+
+import tempfile
+import time
+from pathlib import Path
+
+import click
+import numpy as np
+from common import CONFIGS, Timed, benchmark, interleaved
+from kernel import call
+from tables import Spread, Table
+
+COLUMNS = {
+    "what": "left out",
+    "points": "M",
+    "full": "with it, us",
+    "lean": "without, us",
+    "ratio": "with / without",
+}
+FLAT = ("rods.ring.shape.twist_perturbation=0", "rods.ring.strain_twist=[1.2, 0, 0]",
+        "rods.ring.shape.rotate={axis: [0, 1, 0], degrees: 90}")  # fmt: skip
+DRIVEN = "rods.ring.strain_twist=['1.2 + 0*t', 0, 0.6]"
+ALL_FIELDS = "[position, director, velocity, angular_velocity, force, torque]"
+
+
+@benchmark(full=21, short=5)
+@click.option("--points", type=click.IntRange(8), default=600, show_default=True, help="M.")
+def main(quick, repeats, points):
+    """Measure pairs of the same work, with and without what a scene may not need; serial.
+
+    Both of a pair run in every round, and the ratio is taken within a round. A frame is written
+    to a temporary folder.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        pairs = {**sums(points), **evaluations(points), **frames(points, Path(folder))}
+        timers = {
+            (name, side): Timed(work)
+            for name, both in pairs.items()
+            for side, work in zip(("full", "lean"), both, strict=True)
+        }
+        times = interleaved(timers, repeats, "pairs")
+    rows = [
+        row(name, points, *(np.array(times[name, s]) for s in ("full", "lean"))) for name in pairs
+    ]
+    table = Table("Only what is needed", COLUMNS, rows)
+    return [table], lambda *axes: draw(rows, *axes)
+
+
+def row(name, points, full, lean):
+    """Return one row of the table."""
+    return {
+        "what": name,
+        "points": points,
+        "full": Spread.of(full, 1e6),
+        "lean": Spread.of(lean, 1e6),
+        "ratio": Spread.of(full / lean),
+    }
+
+
+def sums(points):
+    """Return pairs of sums, (32) and (33), over one ring."""
+    spatial = call("algebraic7", points, 1, "spatial")
+    return {
+        "third dimension, sum (plane: yz)": (spatial, call("algebraic7", points, 1, "planar")),
+        "angular sum (tracers, flow)": (spatial, call("algebraic7", points, 1, "no_w")),
+    }
+
+
+def evaluations(points):
+    """Return pairs of evaluations of a ring: flat, with a constant strain twist, with energies."""
+    spatial, planar = system(points, *FLAT), system(points, *FLAT, "plane=yz")
+    steady, driven = system(points), system(points, DRIVEN)
+    state = steady.scene.initial
+
+    def with_energies():
+        evaluate(steady)()
+        steady.observe(state)
+
+    return {
+        "third dimension, evaluation": (evaluate(spatial), evaluate(planar)),
+        "strain twist at every evaluation": (evaluate(driven), evaluate(steady)),
+        "energies and power between frames": (with_energies, evaluate(steady)),
+    }
+
+
+def system(points, *overrides):
+    """Return the system of the closed ring with so many points."""
+    from rodsim.case import load_case
+    from rodsim.dynamics import RodSystem
+    from rodsim.rods import build_scene
+
+    change = f"rods.ring.shape.points={points}"
+    return RodSystem(build_scene(load_case(CONFIGS / "closed_ring.yaml", [change, *overrides])))
+
+
+def evaluate(system):
+    """Return a function that evaluates the rates of a system once."""
+    import numba
+
+    state, y, out = system.scene.initial, system.zeros(), system.zeros()
+
+    def once():
+        numba.set_num_threads(1)
+        system.velocities(0.0, state, y, out)
+
+    return once
+
+
+def frames(points, folder):
+    """Return pairs of writing one frame: with more fields and with the position alone."""
+    names = {"all": ALL_FIELDS, "default": "[position, director]", "position": "[position]"}
+    writers = {name: frame(points, folder / f"{name}.h5", text) for name, text in names.items()}
+    return {
+        "director in a frame": (writers["default"], writers["position"]),
+        "velocities and loads in a frame": (writers["all"], writers["default"]),
+    }
+
+
+def frame(points, path, fields):
+    """Return a function that writes a frame, over and over the same one, of a file of its own."""
+    from rodsim.case import load_case
+    from rodsim.machine import Machine
+    from rodsim.output.writer import TrajectoryWriter
+    from rodsim.recorder import Recorder, plan_output
+    from rodsim.rods import build_scene
+    from rodsim.snapshot import capture
+
+    changes = f"rods.ring.shape.points={points}", f"output.fields={fields}", "output.interval=0.1"
+    case = load_case(CONFIGS / "closed_ring.yaml", changes)
+    scene = build_scene(case)
+    machine = Machine(case, scene, force=True)
+    snapshot = capture(machine, Recorder(machine, time.perf_counter(), 0.0), scene.initial)
+    writer = TrajectoryWriter.create(path, plan_output(case, scene, snapshot))
+    content = machine.system.observe(scene.initial)
+    return lambda: writer.write_frame(0, 0, *content)
+
+
+def draw(rows, left, right):
+    """Left: the ratios; right: the times."""
+    names = [row["what"] for row in rows]
+    errors = np.array([row["ratio"].error for row in rows]).T
+    left.barh(names, [row["ratio"].median for row in rows], xerr=errors, capsize=3)
+    left.set(xlabel="with / without")
+    for shift, key, label in ((-0.2, "full", "with"), (0.2, "lean", "without")):
+        places = np.arange(len(rows)) + shift
+        right.barh(places, [row[key].median for row in rows], height=0.4, label=label)
+    right.set(xscale="log", xlabel="us", yticks=np.arange(len(rows)), yticklabels=[])
+    right.legend()
+    for axes in (left, right):
+        axes.invert_yaxis()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,80 @@
+"""What counts as compiled: a list with checksums, against every way a cache can be broken."""
+
+import pytest
+
+from rodsim import settings
+from rodsim.warmup import LIST, is_compiled, note_compiled
+
+RING, PLANE = "here-algebraic7-0-0", "here-algebraic7-1-0"
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A cache of one kernel: an index, which is a pickle, and compiled code."""
+    return fill(tmp_path / "here")
+
+
+def fill(folder):
+    (folder / "sums").mkdir(parents=True)
+    (folder / "sums" / "sum.nbi").write_bytes(b"\x80\x04index.")
+    (folder / "sums" / "sum.1.nbc").write_bytes(b"\x80\x04machine code.")
+    note_compiled(folder, RING)
+    return folder
+
+
+def test_only_what_is_listed_is_compiled(folder):
+    assert is_compiled(folder, RING)
+    assert not is_compiled(folder, PLANE)
+    note_compiled(folder, PLANE)
+    assert is_compiled(folder, RING)
+    assert is_compiled(folder, PLANE)
+
+
+def test_a_kernel_that_came_later_changes_nothing(folder):
+    (folder / "sums" / "sum.nbi").write_bytes(b"\x80\x04longer index.")
+    (folder / "sums" / "sum.2.nbc").write_bytes(b"\x80\x04other code.")
+    assert is_compiled(folder, RING)
+
+
+@pytest.mark.parametrize(
+    ("name", "contents"),
+    [
+        ("sums/sum.1.nbc", b"\x80\x04mach"),
+        ("sums/sum.1.nbc", b"\x80\x04machine c0de."),
+        ("sums/sum.1.nbc", None),
+        ("sums/sum.nbi", b"\x80\x04ind"),
+        ("sums/sum.nbi", b""),
+        ("sums/sum.nbi", bytes(8)),
+        (LIST, b"{"),
+        (LIST, b"[]"),
+        (LIST, None),
+    ],
+)
+def test_a_broken_cache_is_not_compiled(folder, name, contents):
+    (folder / name).unlink()
+    if contents is not None:
+        (folder / name).write_bytes(contents)
+    assert not is_compiled(folder, RING)
+
+
+def test_in_a_folder_of_the_user_the_files_of_others_do_not_count(tmp_path):
+    folder = fill(tmp_path / "mine")
+    (folder / "sums" / "sum.nbi").write_bytes(b"what another program keeps there")
+    assert is_compiled(folder, RING)
+
+
+def test_another_processor_source_or_version_has_a_cache_of_its_own(tmp_path, monkeypatch):
+    source = tmp_path / "rodsim" / "__init__.py"
+    source.parent.mkdir()
+    source.write_text("here")
+    monkeypatch.setattr(settings.rodsim, "__file__", str(source))
+    folders = [settings.cache_folder()]
+    source.write_text("there")
+    folders.append(settings.cache_folder())
+    monkeypatch.setattr(settings, "_processor", lambda: "another")
+    folders.append(settings.cache_folder())
+    monkeypatch.setattr(settings, "version", lambda name: "99")
+    folders.append(settings.cache_folder())
+    monkeypatch.setattr(settings.rodsim, "__version__", "99")
+    folders.append(settings.cache_folder())
+    assert len(set(folders)) == 5
