@@ -12,6 +12,7 @@ prepare()  # threads and cache as the command has them; before Numba is imported
 import numba  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parent))
+sys.path.append(str(Path(__file__).parent.parent / "benchmarks"))  # the rival, and the theory
 
 
 def pytest_collection_modifyitems(config, items):
