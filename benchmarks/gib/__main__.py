@@ -22,8 +22,8 @@ def main(case_path, output, overrides, points, box, step, threads):
     """Run a case of rodsim by the generalized immersed boundary method."""
     prepare()
     import numba
-    from gib.march import Setup, simulate
 
+    from gib.march import Setup, simulate
     from rodsim import load_case
     from rodsim.progress import make_progress
 

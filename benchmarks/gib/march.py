@@ -74,29 +74,28 @@ class ImmersedRods:
         return self.rates
 
 
-def simulate(case, output, setup=None, *, overwrite=True, progress=None) -> dict:
+def simulate(
+    case, output, setup=None, *, overwrite=True, progress=None, max_seconds=np.inf
+) -> dict:
     """Run a case by the gIB method into a file that :func:`rodsim.open_trajectory` reads.
 
     The case's integrator and step are not used, nor its tracers moved. Kinetic energy is that of
     the tube of radius epsilon in the case, as rodsim has it, with the velocities of the gIB method:
-    it compares velocities. Returns what is stored as ``/runtime``. Raises DivergedError.
+    it compares velocities. A run that lasts longer than ``max_seconds`` ends early, its status is
+    then "stopped". Returns what is stored as ``/runtime``. Raises DivergedError.
     """
     setup, progress, begin = setup or Setup(), progress or Silent(), perf_counter()
     rods = ImmersedRods(case, setup)
     system = RodSystem(rods.scene)
     with create_writer(case, rods.scene, output, overwrite) as writer:
         writer.write_frame(0, 0, *observe(system, rods))
-        solve = 0.0
-        for index, time in enumerate(writer.times[1:], start=1):
-            start = perf_counter()
-            for _ in range(round(time / rods.step) - rods.steps):
-                rods.advance()
-                progress.update(rods.steps * rods.step / case.time.end)
-            solve += perf_counter() - start
+        solve, index = 0.0, 0
+        while index + 1 < len(writer.times) and perf_counter() - begin < max_seconds:
+            index += 1
+            solve += _march(rods, float(writer.times[index]), case.time.end, progress)
             if not np.isfinite(rods.state.position).all():
                 writer.finish("diverged", {})
-                raise DivergedError(f"gIB: the rod is no longer finite at t = {time:g}")
-            rods.state.time = float(time)
+                raise DivergedError(f"gIB: the rod is no longer finite at step {rods.steps}")
             writer.write_frame(index, rods.steps, *observe(system, rods))
         runtime = {
             "wall_seconds": perf_counter() - begin,
@@ -105,8 +104,18 @@ def simulate(case, output, setup=None, *, overwrite=True, progress=None) -> dict
             "steps_accepted": rods.steps,
             "threads": setup.threads,
         }
-        writer.finish("finished", runtime)
+        writer.finish("finished" if index + 1 == len(writer.times) else "stopped", runtime)
     return runtime
+
+
+def _march(rods, time, end, progress):
+    """Make the steps to a frame; return the seconds they took."""
+    start = perf_counter()
+    for _ in range(round(time / rods.step) - rods.steps):
+        rods.advance()
+        progress.update(rods.steps * rods.step / end)
+    rods.state.time = time
+    return perf_counter() - start
 
 
 def observe(system, rods):
