@@ -15,9 +15,10 @@ EPSILONS = (5, 6, 7, 8)
 
 def figure_2(place) -> list[Row]:
     """Shapes at 1 to 5 ms for both twists, and what they relax to."""
-    figure = new_figure(9.0, 5.2)
+    figure = new_figure(9.0, 4.6)
     rows, table = [], {"time": np.array(TIMES)}
-    for line, (label, (config, twist, claimed)) in enumerate(TWISTS.items()):
+    panels = figure.subplots(1, 2, sharey=True)
+    for axes, (label, (config, twist, claimed)) in zip(panels, TWISTS.items(), strict=True):
         output = place.run(f"fig2-{config}", config)
         late = place.run(f"fig2-{config}-60ms", config, "time.end=0.06", "output.interval=1e-3")
         with open_trajectory(output) as run, open_trajectory(late) as relaxed:
@@ -25,9 +26,7 @@ def figure_2(place) -> list[Row]:
             shapes = [run.read("position", f) for f in frames]
             triads = [run.read("director", f) for f in frames]
             end = fit_helix(relaxed.read("position", -1))
-        for column, shape in enumerate(shapes):
-            axes = figure.add_subplot(2, 5, 5 * line + column + 1, projection="3d")
-            _draw(axes, shape, f"{1e3 * TIMES[column]:g} ms")
+        _draw(axes, shapes, label)
         turns = [triad_turns(triad) for triad in triads]
         helical = [fit_helix(shape).turns for shape in shapes]
         table |= {f"twist number, {label}": turns, f"turns of the helix, {label}": helical}
@@ -37,13 +36,15 @@ def figure_2(place) -> list[Row]:
     return [*rows, _gib_shapes_row(place), _constraints_row(place)]
 
 
-def _draw(axes, shape, title):
-    shape = shape - shape.mean(axis=0)
-    axes.plot(*shape.T, lw=2.2, color="C0", solid_capstyle="round")
-    axes.set(xlim=(-1.2, 1.2), ylim=(-1.2, 1.2), zlim=(-3.1, 3.1), title=title)
-    axes.set_box_aspect((2.4, 2.4, 6.2), zoom=1.35)
-    axes.view_init(elev=12, azim=35)
-    axes.set_axis_off()
+def _draw(axes, shapes, label):
+    """Draw shapes beside each other as seen along y, and, thin, along x."""
+    for column, shape in enumerate(shapes):
+        x, y, z = (shape - shape.mean(axis=0)).T
+        axes.plot(y + 1.3 * column, z, lw=0.9, color="0.65")
+        axes.plot(x + 1.3 * column, z, lw=2.0, color="C0", solid_capstyle="round")
+    axes.set_aspect("equal")
+    axes.set_xticks(1.3 * np.arange(len(shapes)), [f"{1e3 * t:g} ms" for t in TIMES])
+    axes.set(ylabel="z (um)", title=f"Omega_3 = {label}: x (thick) and y (thin)")
 
 
 def _turns_row(label, claimed, twist, number, helical, end):

@@ -27,7 +27,8 @@ def figure_4(place) -> list[Row]:
             for column, time in enumerate(TIMES):
                 frame = int(np.argmin(abs(run.time - time)))
                 axes = figure.add_subplot(2, 5, 5 * line + column + 1, projection="3d")
-                _draw(axes, run.read("position", frame), run.read("tracers", frame), time)
+                title = f"{omega}, {1e3 * time:g} ms"
+                _draw(axes, run.read("position", frame), run.read("tracers", frame), title)
             coils[omega] = _history(run)
             for frame in range(1, run.frames):
                 X = run.read("position", frame)
@@ -43,11 +44,11 @@ def _short(place):
     return ("tracers.inner.along=40", "tracers.outer.along=40") if place.quick else ()
 
 
-def _draw(axes, shape, markers, time):
+def _draw(axes, shape, markers, title):
     axes.plot(*np.append(shape, shape[:1], axis=0).T, lw=2.6, color="C3")
     axes.plot(*markers.T, ".", ms=0.7, color="0.45", alpha=0.5)
-    axes.set(xlim=(-2.2, 2.2), ylim=(-2.2, 2.2), zlim=(-1.6, 1.6), title=f"{1e3 * time:g} ms")
-    axes.set_box_aspect((4.4, 4.4, 3.2), zoom=1.35)
+    axes.set(xlim=(-2.6, 2.6), ylim=(-2.6, 2.6), zlim=(-1.7, 1.7), title=title)
+    axes.set_box_aspect((5.2, 5.2, 3.4), zoom=1.45)
     axes.view_init(elev=38, azim=-60)
     axes.set_axis_off()
 
@@ -104,7 +105,7 @@ def _settled_row(place):
         f"Omega_3 = 0.6: from 0.1 to {after:g} s the writhe goes from {coil[at]:.2f} to "
         f"{coil[-1]:.2f}, the total energy from {100 * total[at] / total[0]:.1f} % of "
         f"the initial to {100 * total[-1] / total[0]:.1f} %",
-        verdict(abs(coil[at] - coil[-1]) < 0.05 and total[at] - total[-1] < 0.02 * total[0]),
+        verdict([abs(coil[at]) > 0.8 * abs(coil[-1]), total[at] - total[-1] < 0.01 * total[0]]),
     )
 
 
