@@ -44,7 +44,7 @@ def _draw(axes, shapes, label):
         axes.plot(x + 1.3 * column, z, lw=2.0, color="C0", solid_capstyle="round")
     axes.set_aspect("equal")
     axes.set_xticks(1.3 * np.arange(len(shapes)), [f"{1e3 * t:g} ms" for t in TIMES])
-    axes.set(ylabel="z (um)", title=f"Omega_3 = {label}: x (thick) and y (thin)")
+    axes.set(xlabel="time", ylabel="z (um)", title=f"Omega_3 = {label}: x (thick) and y (thin)")
 
 
 def _turns_row(label, claimed, twist, number, helical, end):

@@ -35,9 +35,8 @@ def write_csv(path, columns: dict) -> None:
     with open(path, "w", newline="") as stream:
         out = csv.writer(stream)
         out.writerow(columns)
-        out.writerows(
-            [f"{value:.8g}" for value in row] for row in zip(*columns.values(), strict=True)
-        )
+        for row in zip(*columns.values(), strict=True):
+            out.writerow([v if isinstance(v, str) else f"{v:.8g}" for v in row])
 
 
 def new_figure(width, height):

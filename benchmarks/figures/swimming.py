@@ -139,14 +139,15 @@ def _reversal_row(amplitudes, frequencies, speeds, rival):
     row, other = speeds.mean(axis=0), np.array(list(rival.values()))
     zero, other_zero = (_first_zero(amplitudes, values) for values in (row, other))
     low, high = speeds[0, -1], speeds[-1, -1]
-    thin = prescribed.speed(K, amplitudes[-1], 350, THIN, 600 * SPACING, points=400)
+    thin = [prescribed.speed(K, b, 350, THIN, 600 * SPACING, points=400) for b in amplitudes]
+    thin_zero = _first_zero(amplitudes, np.array(thin))
     return Row(
         "Fig. 6a",
         "speeds are positive (against the wave) at all amplitudes, as Taylor's",
         f"the rod swims the other way above b = {zero:.2f} um: at {amplitudes[-1]:g} um "
         f"{low:.0f} to {high:.0f} um/s for {frequencies[0]} to {frequencies[-1]} rad/s. A program "
         f"with the wave prescribed and forces only turns too, at {other_zero:.2f} um; with "
-        f"eps = {THIN} um instead of {EPSILON:.2f} it does not ({thin:+.0f} um/s at 350 rad/s)",
+        f"eps = {THIN} um instead of {EPSILON:.2f}, at {thin_zero:.2f} um: the thicker, the sooner",
         verdict((row > 0).all()),
     )
 
