@@ -19,7 +19,7 @@ def pytest_collection_modifyitems(config, items):
     chosen = config.getoption("-m")
     for item in items:
         for mark in ("long", "paper"):
-            if mark in item.keywords and mark not in chosen:
+            if item.get_closest_marker(mark) and mark not in chosen:
                 item.add_marker(pytest.mark.skip(reason=f"takes minutes: pytest -m {mark}"))
         if "compiled" in item.keywords and numba.config.DISABLE_JIT:
             item.add_marker(pytest.mark.skip(reason="needs compiled kernels"))

@@ -141,7 +141,6 @@ def figure_3(place) -> list[Row]:
         for kind, values in panels.items()
         if kind != "(b) kinetic"
     }
-    best, distances = nearest(curves, gib)
     return [
         Row(
             "Fig. 3a, c, d",
@@ -149,24 +148,33 @@ def figure_3(place) -> list[Row]:
             "; ".join(f"{k[4:]}: {_exceptions(v)}" for k, v in falls.items()),
             verdict([not names for names in falls.values()]),
         ),
-        Row(
-            "Fig. 3d",
-            "down to zero at 5 ms",
-            "left of the initial total energy at the end: "
-            + ", ".join(f"{100 * c.total[-1] / c.total[0]:.2f} % ({name})"
-                        for name, c in everyone.items()),
-            verdict([c.total[-1] < 0.02 * c.total[0] for c in everyone.values()]),
-        ),
+        _zero_row(everyone),
         _kinetic_row(everyone),
-        Row(
-            "Fig. 3",
-            "epsilon = 6 ds matches the gIB method's curves",
-            f"nearest is {best} ds; root mean square distance in total energy, of the initial: "
-            + text_of(distances),
-            verdict(best == 6),
-        ),
+        _nearest_row(curves, gib),
         _small_parts_row(everyone),
-    ]  # fmt: skip
+    ]
+
+
+def _zero_row(everyone):
+    left = {name: c.total[-1] / c.total[0] for name, c in everyone.items()}
+    return Row(
+        "Fig. 3d",
+        "down to zero at 5 ms",
+        "left of the initial total energy at the end: "
+        + ", ".join(f"{100 * share:.2f} % ({name})" for name, share in left.items()),
+        verdict([share < 0.02 for share in left.values()]),
+    )
+
+
+def _nearest_row(curves, gib):
+    best, distances = nearest(curves, gib)
+    return Row(
+        "Fig. 3",
+        "epsilon = 6 ds matches the gIB method's curves",
+        f"nearest is {best} ds; root mean square distance in total energy, of the initial: "
+        + text_of(distances),
+        verdict(best == 6),
+    )
 
 
 def _exceptions(names):

@@ -45,8 +45,11 @@ def extrapolated(waves, points):
 
 @pytest.mark.compiled
 def test_swimming_speed_tends_to_the_infinite_filament():
-    """Within 2 %: 8 and 16 wavelengths leave 1.6 %, an end's error is not quite 1/L."""
-    assert extrapolated(8, 20) == pytest.approx(1.0, abs=0.02)
+    """Short and coarse, for its cost: 2.7 % are left, since an end's error is not quite 1/L.
+
+    (8, 20) leaves 1.6 %; the long test below is the one that is within 2 %.
+    """
+    assert extrapolated(8, 12) == pytest.approx(1.0, abs=0.03)
 
 
 @pytest.mark.long
