@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
-from rodsim.dynamics import RodSystem
 from rodsim.elasticity import point_loads
-from rodsim.integrators.step import Step
 from rodsim.rods.restore import restore_scene, stored_state
 
 
@@ -17,7 +17,13 @@ class Replay:
         """``run``: what :func:`rodsim.open_trajectory` returns; needs the triads in its frames."""
         self.run = run
         self.scene = restore_scene(run)
-        self.system = RodSystem(self.scene)
+
+    @cached_property
+    def system(self):
+        """The system of the scene; compiled only where rates are asked for."""
+        from rodsim.dynamics import RodSystem
+
+        return RodSystem(self.scene)
 
     def state(self, frame: int):
         """Return the state of a frame."""
@@ -35,20 +41,21 @@ class Replay:
         fields, _ = self.system.observe(self.state(frame))
         return fields["velocity"].T.copy()
 
-    def between(self, frame: int) -> Step:
-        """Return the motion from a frame to the next one; ``.at(time)`` gives the state.
+    def between(self, frame: int)
+        """Return the motion from a frame to the next one, a Step; ``.at(time)`` gives the state.
 
         Cubic Hermite of the two states and their velocities, error O(interval^4): positions, and
         rotation vectors that lead from the triads of the first frame to those of the second.
         """
+        from rodsim.integrators.step import Step
+
         first, last = self.state(frame), self.state(frame + 1)
         size = last.time - first.time
         system, zero = self.system, self.system.zeros()
         begin = system.rate(first.time, first, zero, np.empty(system.size))
-        guess = 0.5 * size * begin
-        spin = system.rate(last.time, last, zero, np.empty(system.size))
-        guess += 0.5 * size * spin
-        turn = rotation_between(first.director, last.director, system.split(guess)[1])
+        after = system.rate(last.time, last, zero, np.empty(system.size))
+        guess = system.split(0.5 * size * (begin + after))[1]
+        turn = rotation_between(first.director, last.director, guess)
         increment = np.concatenate([(last.position - first.position).ravel(), turn.ravel()])
         end = system.rate(last.time, first, increment, np.empty(system.size))
         return Step(system, frame, first, size, increment, last, (begin, end))

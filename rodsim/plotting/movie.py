@@ -10,7 +10,6 @@ from rodsim.files import replacing
 from rodsim.plotting import style
 from rodsim.plotting.shapes import FRAME, TITLE, Shapes, annotate, set_stage
 
-
 DPI = 110
 LONGEST, HIGHEST = 6.4, 5.4  # inches
 

@@ -31,6 +31,11 @@ def read_title(run) -> str:
         return ""
 
 
+def thickness(run) -> float:
+    """Return how thick rods are drawn, a length."""
+    return THICKNESS * max(rod.spacing * rod.count for rod in run.rods)
+
+
 def plot_shapes(path, out, *, frames, at, view, kind, colour, overlay):
     """Draw the shapes of a run: ``frames`` of them, or those nearest to the times ``at``."""
     with open_trajectory(path) as run:
@@ -115,10 +120,9 @@ def _look(run, chosen, view, kind, colour):
     tracers = np.zeros((len(chosen), 0, 3))
     if "tracers" in run.fields:
         tracers = np.array([run.read("tracers", frame) for frame in chosen])
-    longest = max(rod.spacing * rod.count for rod in run.rods)
     shapes = Shapes(
         run.time[chosen], position, director, run.rods, colours, tracers, run.units,
-        THICKNESS * longest, kind,
+        thickness(run), kind,
     )  # fmt: skip
     return camera, shapes, key
 

@@ -136,17 +136,16 @@ def draw_compass(figure, camera: Camera):
 
 
 def _grid(count, extent):
-    """Return columns and the size of a panel, in inches, as large as the figure allows."""
+    """Return columns and the size of a panel, in inches: as large as can be, few gaps."""
     aspect = max(extent[1] / extent[0], 0.02)
-    best = None
+    choices = []
     for columns in range(1, min(count, 4) + 1):
         rows = -(-count // columns)
         width = min(WIDTH / columns, (HEIGHT / rows - TITLE) / aspect, 5.5)
-        if best is None or width > best[1] * 1.15:
-            best = columns, width, width * aspect
-        elif rows * columns == count and width > 0.75 * best[1]:
-            best = columns, width, width * aspect
-    return best
+        gaps = rows * columns - count
+        choices.append((width * (0.85 if gaps else 1.0), columns, width))
+    _, columns, width = max(choices)
+    return columns, width, width * aspect
 
 
 def annotate(figure, axis, camera: Camera, bounds, unit: str) -> None:
