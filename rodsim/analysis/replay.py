@@ -41,7 +41,7 @@ class Replay:
         fields, _ = self.system.observe(self.state(frame))
         return fields["velocity"].T.copy()
 
-    def between(self, frame: int)
+    def between(self, frame: int):
         """Return the motion from a frame to the next one, a Step; ``.at(time)`` gives the state.
 
         Cubic Hermite of the two states and their velocities, error O(interval^4): positions, and

@@ -40,7 +40,7 @@ SEEDS = {1: 40, 2: 16, 3: 8}  # tracers along the longest side of a line, a plan
               show_default=True, help="What the colour in a plane means.")  # fmt: skip
 @click.option("--arrows", is_flag=True, help="Arrows instead of stream lines.")
 @click.option("--tracers", is_flag=True,
-              help="Follow tracers that start at the points of the grid, from --at on.")  # fmt: skip
+              help="Follow tracers from the points of the grid, from --at on.")  # fmt: skip
 @click.option("--until", type=float, metavar="T",
               help="How long to follow tracers; by default to the end.")  # fmt: skip
 @threads_option

@@ -32,7 +32,7 @@ WHAT = ("shapes", "energy", "curvature", "twist", "speed")
               help="tube (with a stripe along D1) in space, line in a plane, ribbon "
               "(along D1).")  # fmt: skip
 @click.option("--colour", "--color", type=click.Choice(("time", "curvature", "twist")),
-              default="time", show_default=True, help="What the colour of a shape means.")  # fmt: skip
+              default="time", show_default=True, help="What colours mean.")  # fmt: skip
 @click.option("--overlay", is_flag=True, help="Draw all times over each other, not side by side.")
 @click.option("--fps", type=click.FloatRange(0.1, 120), default=20, show_default=True,
               help="Frames a second of a movie.")  # fmt: skip
