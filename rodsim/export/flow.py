@@ -1,4 +1,4 @@
-"""A flow on its grid, or the paths of tracers, as .vtkhdf, .csv or .npz."""
+"""A flow on its grid as .vti, .csv or .npz; the paths of tracers as .vtkhdf, .csv or .npz."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from rodsim.export.image import write_image
 from rodsim.export.run import export_paths
 from rodsim.export.tables import component_heads, head, write_csv, write_npz
 
-SUFFIXES = (".vtkhdf", ".csv", ".npz")
+FLOW, TRACERS = (".vti", ".csv", ".npz"), (".vtkhdf", ".csv", ".npz")
 
 
 def export_flow(flow, units: dict, path) -> None:
     """Write position, velocity and pressure at the points of a grid. Raises FileError.
 
     .npz: ``x``, ``y``, ``z``, ``velocity`` (nx, ny, nz, 3), ``pressure`` (nx, ny, nz), ``time``;
-    .csv: one row per point; .vtkhdf: an image for ParaView.
+    .csv: one row per point; .vti: an image for ParaView.
     """
     grid, data = flow.grid, {"velocity": flow.velocity, "pressure": flow.pressure}
     length, mass, time = (units[key] for key in ("length", "mass", "time"))
     names = {"velocity": f"{length} {time}^-1", "pressure": f"{mass} {length}^-1 {time}^-2"}
-    if path.suffix == ".vtkhdf":
+    if path.suffix == ".vti":
         write_image(path, grid.origin, grid.step, grid.shape, data)
     elif path.suffix == ".npz":
         cubes = {name: v.reshape(*grid.shape, *v.shape[1:]) for name, v in data.items()}

@@ -66,7 +66,7 @@ def plot_speed(path, out):
 
     with open_trajectory(path) as run:
         replay = Replay(run)
-        velocity = np.array([replay.velocity(frame) for frame in range(run.frames)])
+        velocity = np.array([replay.settled_velocity(frame) for frame in range(run.frames)])
         units, time = run.units, run.time
     figure = style.new_figure(6.4, 4.2)
     unit = f"{units['length']} {units['time']}^-1"

@@ -105,9 +105,9 @@ def set_stage(axis, camera: Camera, bounds) -> None:
 
 def draw_scale(axis, bounds, unit: str):
     """Draw a bar of a round length at the bottom left of an axis; return the axis."""
-    width, height = bounds[1] - bounds[0]
+    width = bounds[1, 0] - bounds[0, 0]
     length = style.nice_length(0.25 * width)
-    left, bottom = bounds[0] + 0.02 * np.array([width, width])
+    left, bottom = bounds[0] + 0.02 * width
     axis.plot([left, left + length], [bottom, bottom], color="0.2", lw=2.0, solid_capstyle="butt")
     axis.annotate(
         f"{length:g} {style.pretty_unit(unit)}", (left + length, bottom), xytext=(4, 0),

@@ -9,7 +9,6 @@ import numpy as np
 from rodsim.errors import FileError, UsageError
 from rodsim.files import replacing
 
-STILLS, MOVIES = (".png", ".pdf", ".svg"), (".gif", ".mp4")
 COLOURS = "viridis"  # its lightness rises steadily, so it reads in grey as well
 RASTER_DPI = 160
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
