@@ -10,7 +10,7 @@ from rodsim.plotting import style
 from rodsim.plotting.camera import AXES, Camera
 from rodsim.plotting.rod import draw_rods, draw_tracers
 
-WIDTH, HEIGHT = 8.0, 8.5  # inches a figure may take
+WIDTH, HEIGHT = 8.0, 5.4  # inches that the panels of a figure may take
 TITLE, FRAME, BAR = 0.3, 0.55, 0.9  # inches for a panel's title, for what is below, a colour bar
 MARGIN = 0.04  # of the longest side, around what is drawn
 

@@ -105,8 +105,16 @@ def test_flow_on_a_grid_is_incompressible_and_balances_the_pressure(two_rods):
 
 def test_settling_keeps_the_motion_and_removes_noise(tmp_path):
     """Noise of 1e-6 of the length changes the raw flow much, the settled one a tenth of that."""
-    simulate(load("closed_ring", "rods.ring.shape.points=60", "time.end=0.02",
-                  "output.interval=5e-3", "time.tolerance=1e-7"), tmp_path / "out.h5")  # fmt: skip
+    simulate(
+        load(
+            "closed_ring",
+            "rods.ring.shape.points=60",
+            "time.end=0.02",
+            "output.interval=5e-3",
+            "time.tolerance=1e-7",
+        ),
+        tmp_path / "out.h5",
+    )
 
     def both():
         with open_trajectory(tmp_path / "out.h5") as run:
@@ -128,8 +136,13 @@ def test_settling_keeps_the_motion_and_removes_noise(tmp_path):
 
 
 def test_tracers_afterwards_follow_those_the_run_carried(tmp_path):
-    case = load("open_rod", "time.end=2e-3", "time.tolerance=1e-6", "output.interval=2e-5",
-                "tracers={a: {kind: tube, rod: rod, radius: 0.37, around: 3, along: 5}}")  # fmt: skip
+    case = load(
+        "open_rod",
+        "time.end=2e-3",
+        "time.tolerance=1e-6",
+        "output.interval=2e-5",
+        "tracers={a: {kind: tube, rod: rod, radius: 0.37, around: 3, along: 5}}",
+    )
     simulate(case, tmp_path / "out.h5")
     with open_trajectory(tmp_path / "out.h5") as run:
         carried = run.tracers
