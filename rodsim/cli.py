@@ -19,8 +19,12 @@ COMMANDS = (  # as the help lists them
     "info",
     "run",
     "resume",
-    "energy",
+    "sweep",
     "converge",
+    "energy",
+    "plot",
+    "flow",
+    "export",
     "schema",
 )
 EXIT_CODES = """\b

@@ -1,6 +1,10 @@
-"""What kind of file a path is, told without the library that would read it."""
+"""What kind of file a path is, told without the library that would read it; whole files."""
 
+import os
+from contextlib import contextmanager
 from pathlib import Path
+
+from rodsim.errors import FileError
 
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
@@ -9,3 +13,21 @@ def has_hdf5_signature(path: Path) -> bool:
     """Return whether a file begins as HDF5 files do; raises OSError if it cannot be read."""
     with path.open("rb") as stream:
         return stream.read(len(HDF5_SIGNATURE)) == HDF5_SIGNATURE
+
+
+@contextmanager
+def replacing(path):
+    """Give a name beside ``path`` to write to; in the end that file takes its place, whole.
+
+    Where the block fails or is interrupted, nothing of it is left and what was there stays.
+    Raises FileError where that is impossible.
+    """
+    path = Path(path)
+    temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
+    try:
+        yield temporary
+        os.replace(temporary, path)
+    except OSError as error:
+        raise FileError(f"{path}: cannot be written: {error.strerror or error}") from error
+    finally:
+        temporary.unlink(missing_ok=True)

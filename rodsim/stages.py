@@ -3,6 +3,7 @@
 from functools import lru_cache
 
 import numpy as np
+from numba import get_num_threads
 
 from rodsim.elasticity import point_loads
 from rodsim.fluid.blobs import ALGEBRAIC7
@@ -42,6 +43,9 @@ def stage_loop(blob: int, planar: bool, tracers: bool):
     state ``base`` = (position, director, tracer), so that Y_0 = 0. fluid: epsilon, viscosity;
     omegas: the strain twist of these evaluations in turn, or one that stands for all.
     """
+    # A loop read from the cache is linked at once, and its sums need the threading layer there.
+    # Numba sees to that for the sums themselves, not always for what calls them.
+    get_num_threads()
     seven = blob == ALGEBRAIC7
 
     @kernel(f"void({SYSTEM}, {TRIADS}, {MAT}, int64, int64, float64, {VEC}, {VEC}, {MAT}, {VEC})")

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rodsim.analysis.strain import strain_twist
+
 
 @dataclass(frozen=True)
 class Helix:
@@ -38,9 +40,5 @@ def triad_turns(director: np.ndarray, closed: bool = False) -> float:
     For a rod at rest this is Omega_3 L / 2 pi, the number that eq. (45) calls turns; it is a
     twist number and not the number of turns of the helix. ``director[k, i]`` is D^(i+1).
     """
-    after = np.roll(director, -1, axis=0)
-    pairs = slice(None) if closed else slice(len(director) - 1)
-    here, after = director[pairs], after[pairs]
-    cosine = 0.5 * np.sqrt(1.0 + np.einsum("kic,kic->k", here, after))
-    axial = 0.5 * np.cross(here, after).sum(axis=1)
-    return float(np.sum(np.einsum("kc,kc->k", axial, here[:, 2]) / cosine) / (2.0 * np.pi))
+    twist = strain_twist(director, 1.0, closed)[:, 2]
+    return float(np.sum(twist) / (2.0 * np.pi))

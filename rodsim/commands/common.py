@@ -83,3 +83,18 @@ def prepare_numba() -> None:
     from rodsim.settings import prepare
 
     prepare()
+
+
+def written_path(path, suffixes):
+    """Return the path of a file to write; raises UsageError where its suffix is none of these."""
+    from rodsim.errors import UsageError
+
+    if path.suffix not in suffixes:
+        raise UsageError(f"{path}: must end in one of {' '.join(suffixes)}")
+    return path
+
+
+def say_written(path, replaced, quiet=False) -> None:
+    """Say which file a command has written, and whether another one was there."""
+    if not quiet:
+        click.echo(f"wrote {path}{', in place of an earlier one' if replaced else ''}", err=True)

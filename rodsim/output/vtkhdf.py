@@ -24,8 +24,7 @@ def build_view(file: h5py.File, plan: Plan) -> None:
     root.attrs["Version"] = np.array(VERSION, dtype=np.int64)
     root.attrs["Type"] = np.bytes_("PolyData")
     root["NumberOfPoints"] = np.array([plan.points], dtype=np.int64)
-    for kind in CELLS:
-        _add_cells(root.create_group(kind), plan.rods if kind == "Lines" else [])
+    add_cells(root, "Lines", rod_lines(plan.rods))
     root["CellData/rod"] = np.arange(len(plan.rods), dtype=np.int64)
     data = root.create_group("PointData")
     for series in plan.fields_stored():
@@ -36,7 +35,7 @@ def build_view(file: h5py.File, plan: Plan) -> None:
                 _add_view(data, f"D{i + 1}", file[f"{series.where}/value"], np.s_[:, :, i, :])
         elif series.where.startswith(TRAJECTORY):
             _add_view(data, series.name, file[f"{series.where}/value"], np.s_[:])
-    _add_steps(root.create_group("Steps"), len(plan.times), plan.points, data)
+    add_steps(root.create_group("Steps"), len(plan.times), plan.points, data, ["rod"])
 
 
 class View:
@@ -77,20 +76,28 @@ def _add_view(group, name, value, pick):
     group.create_virtual_dataset(name, view, fillvalue=np.nan)
 
 
-def _add_cells(group, rods):
-    """Add one polyline per rod; a closed one ends where it began."""
-    lines = [
+def rod_lines(rods) -> list[list[int]]:
+    """Return the node numbers of one polyline per rod; a closed one ends where it began."""
+    return [
         [*range(rod.first, rod.first + rod.count), *([rod.first] if rod.closed else [])]
         for rod in rods
     ]
-    connectivity = np.array([node for line in lines for node in line], dtype=np.int64)
-    group["NumberOfCells"] = np.array([len(lines)], dtype=np.int64)
-    group["NumberOfConnectivityIds"] = np.array([connectivity.size], dtype=np.int64)
-    group["Offsets"] = np.cumsum([0, *map(len, lines)], dtype=np.int64)
-    group["Connectivity"] = connectivity
 
 
-def _add_steps(group, frames, points, point_data):
+def add_cells(root: h5py.Group, kind: str, cells: list[list[int]]) -> None:
+    """Add the groups of all kinds of cells; only ``kind`` has some, given by their nodes."""
+    for name in CELLS:
+        nodes = cells if name == kind else []
+        group = root.create_group(name)
+        connectivity = np.array([node for cell in nodes for node in cell], dtype=np.int64)
+        group["NumberOfCells"] = np.array([len(nodes)], dtype=np.int64)
+        group["NumberOfConnectivityIds"] = np.array([connectivity.size], dtype=np.int64)
+        group["Offsets"] = np.cumsum([0, *map(len, nodes)], dtype=np.int64)
+        group["Connectivity"] = connectivity
+
+
+def add_steps(group: h5py.Group, frames: int, points: int, point_data, cell_data) -> None:
+    """Add what says where each frame's points and data lie; none is visible yet."""
     group.attrs["NSteps"] = np.int64(0)
     # One chunk, there from the start: growing changes one number, and no index that could tear.
     group.create_dataset("Values", (1,), np.float64, maxshape=(frames,), chunks=(frames,))[:] = 0.0
@@ -99,7 +106,8 @@ def _add_steps(group, frames, points, point_data):
     group["PointOffsets"] = np.arange(frames, dtype=np.int64) * points
     group["CellOffsets"] = np.zeros((frames, len(CELLS)), dtype=np.int64)
     group["ConnectivityIdOffsets"] = group["CellOffsets"]
-    group["CellDataOffsets/rod"] = group["PartOffsets"]
+    for name in cell_data:
+        group[f"CellDataOffsets/{name}"] = group["PartOffsets"]
     for name in point_data:
         group[f"PointDataOffsets/{name}"] = group["PointOffsets"]
     group.require_group("PointDataOffsets")

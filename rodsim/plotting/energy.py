@@ -1,20 +1,13 @@
 """Energies over time."""
 
-from rodsim.errors import FileError, UsageError
+from rodsim.plotting import style
 
 
 def plot_energies(table, path) -> None:
     """Draw every column of an :class:`~rodsim.analysis.energy.EnergyTable` over time to a file."""
-    try:
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise UsageError("--plot needs matplotlib: pip install 'rodsim[plot]'") from error
-    figure = Figure(figsize=(6.4, 4.2), layout="constrained")
+    figure = style.new_figure(6.4, 4.2)
     draw_energies(figure.add_subplot(), table)
-    try:
-        figure.savefig(path, dpi=160)
-    except (OSError, ValueError) as error:
-        raise FileError(f"{path}: cannot be drawn: {error}") from error
+    style.save(figure, path)
 
 
 def draw_energies(axis, table):
@@ -28,15 +21,16 @@ def draw_energies(axis, table):
             continue
         width = 2.4 if column == "total" else 1.4
         axis.plot(time, values, styles[column], lw=width, label=column)
-    axis.set_xlabel(f"time ({table.time_unit})")
-    axis.set_ylabel(f"energy ({table.unit})")
+    style.scale(axis, table.rows[:, table.columns.index("total")])
+    axis.set_xlabel(style.label("time", table.time_unit))
+    axis.set_ylabel(style.label("energy", table.unit))
     handles, labels = axis.get_legend_handles_labels()
     if "kinetic" in table.columns:
         right = axis.twinx()
         kinetic = table.rows[:, table.columns.index("kinetic")]
         handles += right.plot(time, kinetic, color="0.4", ls=(0, (5, 1, 1, 1)), lw=1.4)
         labels.append("kinetic (right)")
-        right.set_ylabel(f"kinetic energy ({table.unit})")
+        right.set_ylabel(style.label("kinetic energy", table.unit))
     axis.legend(handles, labels, frameon=False)
     axis.set_xlim(time[0], time[-1])
     return axis

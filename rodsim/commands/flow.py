@@ -1,0 +1,160 @@
+"""``rodsim flow``."""
+
+from pathlib import Path
+
+import click
+
+from rodsim.commands.common import (
+    output_argument,
+    prepare_numba,
+    say_written,
+    threads_option,
+    warn,
+    written_path,
+)
+
+GRID_HELP = """\b
+Grids (sizes follow the rods, with a margin, unless given):
+  plane                the plane in which the rods are largest
+  plane:yz             parallel to y and z, through the middle; plane:yz@0.5 at x = 0.5
+  line:z               along z, through the middle; line:z@0.5,2 at x = 0.5, y = 2
+  box                  all around the rods
+  0,-2:2:41,-3:3:61    x = 0, 41 values of y from -2 to 2, 61 values of z from -3 to 3
+"""
+SEEDS = {1: 40, 2: 16, 3: 8}  # tracers along the longest side of a line, a plane, a box
+
+TRUSTED = 0.1  # of epsilon: what tracers may be off by in one frame without a warning
+STILLS = (".png", ".pdf", ".svg")
+
+
+# fmt: off
+@click.command(epilog=GRID_HELP)
+@output_argument
+@click.option("--at", type=float, metavar="T",
+              help="Time; the frame nearest to it is taken. By default the last one, for tracers "
+              "the first.")
+@click.option("--grid", "grid_text", default="plane", show_default=True, metavar="GRID",
+              help="Points at which the flow is wanted, or where tracers start; see "
+              "below.")
+@click.option("--resolution", type=click.IntRange(2, 100_000), metavar="N",
+              help="Points along the longest side of the grid.")
+@click.option("-o", "--output", "path", type=click.Path(path_type=Path, dir_okay=False),
+              help="File to write: a picture .png .pdf .svg, or numbers .npz .csv .vti, of "
+              "tracers .vtkhdf; by default OUT_flow.png. One that exists is replaced.")
+@click.option("--colour", "--color", type=click.Choice(("speed", "pressure")), default="speed",
+              show_default=True, help="What the colour in a plane means.")
+@click.option("--arrows", is_flag=True, help="Arrows instead of stream lines.")
+@click.option("--tracers", is_flag=True,
+              help="Follow tracers from the points of the grid, from --at on.")
+@click.option("--until", type=float, metavar="T",
+              help="How long to follow tracers; by default to the end.")
+@click.option("--raw", is_flag=True,
+              help="Use the stored state as it is; its fastest modes are let settle "
+              "otherwise.")
+@threads_option
+@click.option("-q", "--quiet", is_flag=True, help="No progress, no message.")
+def flow(output, at, grid_text, resolution, path, colour, arrows, tracers, until, raw, threads,
+         quiet):
+    # fmt: on
+    """Compute velocity and pressure of the fluid around the rods of a stored run.
+
+    From the file alone, at any of its frames; or the paths of tracers through its frames.
+    """
+    from rodsim.export.flow import FLOW, TRACERS
+
+    default = output.with_name(f"{output.stem}_{'tracers' if tracers else 'flow'}.png")
+    path = written_path(path or default, (*STILLS, *(TRACERS if tracers else FLOW)))
+    there = path.exists()
+    prepare_numba()
+    from rodsim.output import open_trajectory
+    from rodsim.threads import threads_for
+
+    with open_trajectory(output) as run, threads_for(10**6, threads):
+        if tracers:
+            _tracers(run, at, until, grid_text, resolution, path, quiet)
+        else:
+            _flow(run, at, grid_text, resolution, path, colour, arrows, raw, quiet)
+    say_written(path, there, quiet)
+
+
+def _flow(run, at, grid_text, resolution, path, colour, arrows, raw, quiet):
+    from rodsim.analysis.flow import flow_at
+    from rodsim.analysis.grid import make_grid
+    from rodsim.analysis.replay import Replay
+
+    replay = Replay(run)
+    frame = _frame(run, at, run.frames - 1, quiet)
+    grid = make_grid(grid_text, run.read("position", frame), resolution)
+    flow = flow_at(replay, frame, grid, raw)
+    if path.suffix in STILLS:
+        from rodsim.plotting.flow_pictures import plot_flow
+
+        plot_flow(flow, _drawn(run, frame), path, colour, arrows)
+    else:
+        from rodsim.export.flow import export_flow
+
+        export_flow(flow, run.units, path)
+
+
+def _tracers(run, at, until, grid_text, resolution, path, quiet):
+    from rodsim.analysis.flow import tracer_paths
+    from rodsim.analysis.grid import make_grid
+    from rodsim.analysis.replay import Replay
+    from rodsim.progress import make_progress
+
+    replay = Replay(run)
+    first = _frame(run, at, 0, quiet)
+    last = _frame(run, until, run.frames - 1, quiet)
+    if last <= first:
+        from rodsim.errors import UsageError
+
+        raise UsageError("tracers need a time --until after the one --at which they start")
+    grid = make_grid(grid_text, run.read("position", first), resolution, SEEDS)
+    with make_progress("tracers", quiet) as progress:
+        paths = tracer_paths(replay, grid.points, first, last, progress)
+    _say_miss(run, replay, paths, quiet)
+    if path.suffix in STILLS:
+        from rodsim.plotting.flow_pictures import plot_paths
+
+        plot_paths(paths.time, paths.position, _drawn(run, last), path)
+    else:
+        from rodsim.export.flow import export_tracers
+
+        export_tracers(paths.time, paths.position, run.units, path)
+
+
+def _say_miss(run, replay, paths, quiet):
+    """Say how far the paths can be trusted; warn where that is not far."""
+    worst = int(paths.miss.argmax())
+    begin, end = paths.time[worst : worst + 2]
+    text = (
+        f"the rods' own points, followed in the same way, miss their stored places by up to "
+        f"{paths.miss[worst]:.2g} {run.units['length']} a frame (between t = {begin:g} and {end:g})"
+    )
+    if paths.miss[worst] > TRUSTED * replay.scene.epsilon:
+        warn(f"{text}: start later (--at), or run with a shorter output.interval")
+    elif not quiet:
+        click.echo(text, err=True)
+
+
+def _frame(run, asked, default, quiet):
+    """Return the frame nearest to the time asked for; say so if it is another time."""
+    from rodsim.analysis.frames import nearest_frame
+    from rodsim.errors import FileError
+
+    if run.frames == 0:
+        raise FileError(f"{run.path}: has no frames yet ({run.status})")
+    if asked is None:
+        return default
+    frame = nearest_frame(run.time, asked, run.units["time"])
+    if run.time[frame] != asked and not quiet:
+        unit = run.units["time"]
+        click.echo(f"t = {run.time[frame]:g} {unit} is the frame nearest to {asked:g}", err=True)
+    return frame
+
+
+def _drawn(run, frame):
+    from rodsim.plotting.flow_pictures import scene_to_draw
+    from rodsim.plotting.pictures import read_title, thickness
+
+    return scene_to_draw(run, frame, read_title(run), thickness(run))

@@ -1,0 +1,1 @@
+"""Files for other programs: .csv, .npz, and .vtkhdf, which ParaView opens."""

@@ -1,0 +1,132 @@
+"""A stored run as .vtkhdf, .csv or .npz: rods and their data, or tracers."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+
+from rodsim.analysis.strain import bend, strain_twist
+from rodsim.errors import FileError
+from rodsim.export.polydata import write_polydata
+from rodsim.export.tables import component_heads, head, write_csv, write_npz
+from rodsim.output.vtkhdf import rod_lines
+
+SUFFIXES = (".vtkhdf", ".csv", ".npz")
+
+
+def export_run(run, path, *, every=1, tracers=False, radius=None, progress=None) -> None:
+    """Write every ``every``-th frame of an open run to a file whose suffix says the format.
+
+    ``tracers``: the fluid markers instead of the rods (an .npz always has both). ``radius``: of
+    the tubes in ParaView, a length; by default ``epsilon e^(-1/2)``, the radius of the cylinder
+    that drags the fluid along as the rod does. Raises FileError.
+    """
+    frames = range(0, run.frames, every)
+    if not frames:
+        raise FileError(f"{run.path}: has no frames yet ({run.status})")
+    if tracers and "tracers" not in run.fields:
+        raise FileError(f"{run.path}: has no tracers")
+    if path.suffix == ".npz":
+        write_npz(path, _arrays(run, slice(None, None, every)))
+    elif path.suffix == ".csv":
+        heads = _heads(run, tracers)
+        write_csv(path, heads, _blocks(run, frames, tracers), len(frames), progress)
+    elif tracers:
+        export_paths(path, run.time[list(frames)], _markers(run, frames), progress)
+    else:
+        radius = radius or tube_radius(run)
+        lines, numbers = rod_lines(run.rods), {"rod": np.arange(len(run.rods))}
+        moving = (_frame(run, frame, radius) for frame in frames)
+        write_polydata(path, run.time[list(frames)], moving, "Lines", lines, numbers, progress)
+
+
+def export_paths(path, time, paths, progress=None) -> None:
+    """Write moving points, an iterable of (P, 3) for each time, as vertices; raises FileError."""
+    first = next(paths := iter(paths))
+    vertices = [[number] for number in range(len(first))]
+    frames = ((position, {}) for position in (first, *paths))
+    write_polydata(path, time, frames, "Vertices", vertices, progress=progress)
+
+
+def tube_radius(run) -> float:
+    """Return ``epsilon e^(-1/2)``: a line of blobs moves as a cylinder of this radius does."""
+    from rodsim.rods.restore import restore_scene
+
+    return float(restore_scene(run).epsilon * np.exp(-0.5))
+
+
+def _markers(run, frames):
+    return (run.read("tracers", frame) for frame in frames)
+
+
+def _frame(run, frame, radius):
+    """Return positions and point data of a frame: s, radius, triads, curvature, stored fields."""
+    data = {"s": _arc(run), "radius": np.full(run.points, radius)}
+    for name in run.fields:
+        if name == "director":
+            triads = run.read(name, frame)
+            data |= {f"D{i + 1}": triads[:, i] for i in range(3)}
+            data["curvature"], data["twist"] = _at_points(run, triads)
+        elif name not in ("position", "tracers"):
+            data[name] = run.read(name, frame)
+    return run.read("position", frame), data
+
+
+def _arc(run):
+    return np.concatenate([np.arange(rod.count) * rod.spacing for rod in run.rods])
+
+
+def _at_points(run, triads):
+    """Return curvature and twist at the points: the mean of the segments on both sides."""
+    parts = []
+    for rod in run.rods:
+        strain = strain_twist(triads[rod.first : rod.first + rod.count], rod.spacing, rod.closed)
+        values = np.stack([np.abs(bend(strain)), strain[:, 2]], axis=1)
+        before = np.roll(values, 1, axis=0) if rod.closed else np.vstack([values[:1], values])
+        after = values if rod.closed else np.vstack([values, values[-1:]])
+        parts.append(0.5 * (before + after))
+    return np.concatenate(parts).T
+
+
+def _heads(run, tracers):
+    time, length = head("time", run.units["time"]), run.units["length"]
+    if tracers:
+        return ["frame", time, "tracer", *component_heads("", length)]
+    heads = ["frame", time, "rod", "point", head("s", length), *component_heads("", length)]
+    for name in run.fields:
+        if name == "director":
+            heads += [h for i in (1, 2, 3) for h in component_heads(f"D{i}", "")]
+        elif name not in ("position", "tracers"):
+            heads += component_heads(name, run.unit(name))
+    return heads
+
+
+def _blocks(run, frames, tracers):
+    """Yield the columns of each frame."""
+    if not tracers:
+        names = np.concatenate([[rod.name] * rod.count for rod in run.rods])
+        numbers = np.concatenate([np.arange(rod.count) for rod in run.rods])
+        fixed = [names, numbers, _arc(run)]
+        fields = [name for name in run.fields if name != "tracers"]
+    for frame in frames:
+        if tracers:
+            columns = [*run.read("tracers", frame).T]
+            columns.insert(0, np.arange(len(columns[0])))
+        else:
+            values = [run.read(name, frame).reshape(run.points, -1).T for name in fields]
+            columns = [*fixed, *(column for value in values for column in value)]
+        rows = len(columns[0])
+        yield [np.full(rows, frame), np.full(rows, run.time[frame]), *columns]
+
+
+def _arrays(run, frames):
+    """Return everything of some frames under its name, and what is needed to read it."""
+    arrays = {"time": run.time[frames], "step": run.steps[frames]}
+    arrays |= {name: run.read(name, frames) for name in run.fields}
+    arrays |= {name: run.observable(name, frames) for name in run.observables}
+    for key in ("name", "first", "count", "closed", "spacing", "moduli"):
+        arrays[f"rod_{key}"] = np.array([getattr(rod, key) for rod in run.rods])
+    units = {name: run.unit(name) for name in (*run.fields, *run.observables)}
+    units["time"] = run.units["time"]
+    return arrays | {"units": json.dumps(units), "case": run.case_resolved}

@@ -1,0 +1,185 @@
+"""Whole pictures of a flow: chooses by the grid what to draw, and draws the rods into it."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from rodsim.analysis.grid import AXES
+from rodsim.plotting import style
+from rodsim.plotting.camera import make_camera
+from rodsim.plotting.flow import (
+    BOX_ARROWS,
+    PRESSURE,
+    SPEED,
+    draw_box,
+    draw_line_profile,
+    draw_paths,
+    draw_plane,
+    light_map,
+)
+from rodsim.plotting.rod import draw_rods
+from rodsim.plotting.shapes import BAR, FRAME, annotate, set_stage
+
+WIDTH, HEIGHT = 7.0, 7.0  # inches
+ROD = (0.75, 0.22, 0.1, 1.0)
+
+
+def plot_flow(flow, scene, out, colour="speed", arrows=False) -> None:
+    """Draw a flow to a file: profiles along a line, a map of a plane, or arrows in a box.
+
+    ``flow``: :class:`~rodsim.analysis.flow.Flow`. ``scene``: position, director, rods, units,
+    thickness and title of what drives it.
+    """
+    varying = flow.grid.varying
+    if len(varying) == 3:
+        figure = _box(flow, scene)
+    elif len(varying) == 2:
+        figure = _plane(flow, scene, colour, arrows)
+    else:
+        figure = _line(flow, scene)
+    figure.suptitle(_title(scene, flow.time), fontsize=11)
+    style.save(figure, out)
+
+
+def plot_paths(time, paths, scene, out) -> None:
+    """Draw the paths of tracers to a file, with the rods at the end."""
+    camera = make_camera("auto", np.concatenate([paths.reshape(-1, 3), scene.position]))
+    seen = camera.project(np.concatenate([paths.reshape(-1, 3), scene.position]))[:, :2]
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    bounds = np.array([low, high]) + 0.05 * (high - low).max() * np.array([[-1], [1]])
+    figure, axis = _stage(camera, bounds, scene)
+    colours = style.colour_map(style.COLOURS)
+    draw_paths(axis, camera, time, paths, colours)
+    _draw_rods(axis, camera, scene)
+    figure.colorbar(
+        axis.collections[0], ax=axis, label=style.label("time", scene.units["time"]),
+        pad=0.02, shrink=0.8,
+    )  # fmt: skip
+    figure.suptitle(_title(scene, None), fontsize=11)
+    style.save(figure, out)
+
+
+def _title(scene, time):
+    stamp = "" if time is None else f"t = {time:.4g} {style.pretty_unit(scene.units['time'])}"
+    return ", ".join(part for part in (scene.title, stamp) if part)
+
+
+def _unit(scene, kind):
+    length, mass, time = (scene.units[key] for key in ("length", "mass", "time"))
+    return f"{length} {time}^-1" if kind == "speed" else f"{mass} {length}^-1 {time}^-2"
+
+
+def _stage(camera, bounds, scene):
+    """Return a figure and an axis with room for what is inside ``bounds`` and a colour bar."""
+    width, height = bounds[1] - bounds[0]
+    scale = min((WIDTH - BAR) / width, HEIGHT / height)
+    figure = style.new_figure(
+        max(scale * width, 3.0) + BAR + 0.4, max(scale * height, 0.8) + FRAME + 0.5
+    )
+    axis = figure.add_subplot()
+    set_stage(axis, camera, bounds)
+    annotate(figure, axis, camera, bounds, scene.units["length"])
+    return figure, axis
+
+
+def _draw_rods(axis, camera, scene):
+    """Draw the rods as tubes in a tilted view; in a plane as lines with a light edge."""
+    colours = [ROD] * len(scene.rods)
+    if not camera.flat:
+        draw_rods(
+            axis, camera, scene.rods, scene.position, scene.director, scene.thickness, colours
+        )
+        axis.collections[-1].set_zorder(4)
+        return
+    for colour, width in (((1.0, 1.0, 1.0, 1.0), 4.5), (ROD, 2.6)):
+        draw_rods(axis, camera, scene.rods, scene.position, None, 0.0, [colour] * len(colours),
+                  "line")  # fmt: skip
+        axis.collections[-1].set(linewidths=width, zorder=4)
+
+
+def _plane(flow, scene, colour, arrows):
+    grid = flow.grid
+    a, b = sorted(grid.varying, key=lambda axis: -grid.shape[axis] * grid.step[axis])
+    fixed = ({0, 1, 2} - {a, b}).pop()
+    coordinates = grid.x, grid.y, grid.z
+
+    def seen(values):
+        cube = np.squeeze(values.reshape(*grid.shape, *values.shape[1:]), axis=fixed)
+        return cube if a < b else cube.swapaxes(0, 1)
+
+    velocity, speed = seen(flow.velocity), seen(np.linalg.norm(flow.velocity, axis=1))
+    camera = make_camera(AXES[a] + AXES[b], scene.position)
+    right, up = coordinates[a], coordinates[b]
+    bounds = np.array([[right[0], up[0]], [right[-1], up[-1]]])
+    figure, axis = _stage(camera, bounds, scene)
+    text = style.label(colour, _unit(scene, colour))
+    if colour == "speed":
+        shown, colours, limits = speed, light_map(*SPEED), (0.0, speed.max() or 1.0)
+    else:
+        shown, colours = seen(flow.pressure), light_map(*PRESSURE)
+        most = np.percentile(np.abs(shown), 99.0) or 1.0
+        limits = -most, most
+    draw_plane(axis, right, up, velocity[..., [a, b]], shown, text, colours, limits, arrows)
+    _draw_rods(axis, camera, scene)
+    where = style.label(f"{AXES[fixed]} = {coordinates[fixed][0]:.4g}", "")
+    unit = style.pretty_unit(scene.units["length"])
+    axis.set_title(f"plane {where} {unit}", fontsize=9, loc="left", pad=3)
+    return figure
+
+
+def _line(flow, scene):
+    grid = flow.grid
+    along = grid.varying[0] if grid.varying else 2
+    coordinates = grid.x, grid.y, grid.z
+    figure = style.new_figure(6.4, 5.4)
+    top, bottom = figure.subplots(2, 1, sharex=True)
+    curves = {f"u_{name}": flow.velocity[:, i] for i, name in enumerate(AXES)}
+    draw_line_profile(
+        top, coordinates[along], curves, style.label("velocity", _unit(scene, "speed"))
+    )
+    pressure = {"pressure": flow.pressure}
+    draw_line_profile(
+        bottom, coordinates[along], pressure, style.label("pressure", _unit(scene, "pressure"))
+    )
+    unit = scene.units["length"]
+    bottom.set_xlabel(style.label(AXES[along], unit))
+    others = [f"{AXES[i]} = {coordinates[i][0]:.4g}" for i in range(3) if i != along]
+    where = f"line {', '.join(others)} {style.pretty_unit(unit)}"
+    top.set_title(where, fontsize=9, loc="left", pad=3)
+    return figure
+
+
+def _box(flow, scene):
+    grid = flow.grid
+    thin = [max(1, round(max(grid.shape) / BOX_ARROWS))] * 3
+    pick = tuple(slice(t // 2, None, t) for t in thin)
+    points, velocity = (
+        values.reshape(*grid.shape, 3)[pick].reshape(-1, 3)
+        for values in (grid.points, flow.velocity)
+    )
+    camera = make_camera("3d", grid.points)
+    seen = camera.project(grid.points)[:, :2]
+    bounds = np.array([seen.min(axis=0), seen.max(axis=0)])
+    figure, axis = _stage(camera, bounds, scene)
+    top = float(np.linalg.norm(velocity, axis=1).max())
+    draw_box(axis, camera, points, velocity, light_map("YlGnBu", 0.3, 1.0), top)
+    figure.colorbar(
+        axis.collections[-1], ax=axis, label=style.label("speed", _unit(scene, "speed")),
+        pad=0.02, shrink=0.8,
+    )  # fmt: skip
+    _draw_rods(axis, camera, scene)
+    return figure
+
+
+def scene_to_draw(run, frame, title, thickness):
+    """Return what the pictures here need to know of a run's rods in one frame."""
+    return SimpleNamespace(
+        position=run.read("position", frame),
+        director=run.read("director", frame),
+        rods=run.rods,
+        units=run.units,
+        title=title,
+        thickness=thickness,
+    )

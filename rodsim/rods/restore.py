@@ -1,0 +1,56 @@
+"""A stored run -> the scene it ran: from the output file alone."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+
+from rodsim.case import case_from_mapping
+from rodsim.errors import CaseError, FileError
+from rodsim.rods import Rods, Scene, State, StrainTwist, _epsilon
+
+
+def restore_scene(run) -> Scene:
+    """Return the scene of a stored run, its first frame as the initial state, without tracers.
+
+    ``run`` is what :func:`rodsim.open_trajectory` returns. Rods are as the file records them, so
+    that a shape file the case names need not be there any more. Raises FileError.
+    """
+    if run.frames == 0:
+        raise FileError(f"{run.path}: has no frames yet ({run.status})")
+    try:
+        case = case_from_mapping(json.loads(run.case_resolved), path=str(run.path))
+        entries = [case.rods[rod.name].strain_twist for rod in run.rods]
+    except (ValueError, KeyError, CaseError) as error:
+        raise FileError(f"{run.path}: damaged: the case in it cannot be used: {error}") from error
+    rods = _rods(run.rods)
+    return Scene(
+        rods=rods,
+        strain_twist=StrainTwist(rods, entries),
+        epsilon=_epsilon(case, rods)[0],
+        viscosity=case.fluid.viscosity,
+        blob=case.fluid.blob,
+        planar=case.plane is not None,
+        density=case.fluid.density,
+        tracer_groups={},
+        initial=stored_state(run, 0),
+    )
+
+
+def stored_state(run, frame: int) -> State:
+    """Return the positions and triads of one frame as a state without tracers."""
+    position = np.ascontiguousarray(run.read("position", frame).T)
+    director = np.ascontiguousarray(run.read("director", frame).transpose(1, 2, 0))
+    return State(float(run.time[frame]), position, director, np.zeros((3, 0)))
+
+
+def _rods(records):
+    return Rods(
+        names=tuple(rod.name for rod in records),
+        first=np.array([rod.first for rod in records], dtype=np.int64),
+        count=np.array([rod.count for rod in records], dtype=np.int64),
+        closed=np.array([rod.closed for rod in records], dtype=np.bool_),
+        spacing=np.array([rod.spacing for rod in records], dtype=float),
+        moduli=np.array([rod.moduli for rod in records], dtype=float).T.copy(),
+    )

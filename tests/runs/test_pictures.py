@@ -1,0 +1,232 @@
+"""Pictures and movies as users get them: whole, uncut, said; and what is in them."""
+
+import sys
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from scenes import CONFIGS
+
+from rodsim import open_trajectory
+from rodsim.cli import main
+from rodsim.plotting.camera import VIEWS, make_camera
+from rodsim.plotting.style import nice_length, pretty_unit
+from rodsim.plotting.surface import normals, ribbon, tube
+
+matplotlib = pytest.importorskip("matplotlib")
+
+RING, TAIL = (str(CONFIGS / f"{name}.yaml") for name in ("closed_ring_low_twist", "flagellum"))
+SETS = {
+    "ring.h5": (RING, "rods.ring.shape.points=40", "time.end=2e-3", "tracers.inner.along=9"),
+    "tail.h5": (TAIL, "rods.tail.shape.points=60", "time.end=4e-3"),
+}
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("runs")
+    for name, (case, *sets) in SETS.items():
+        options = [word for text in sets for word in ("--set", text)]
+        done = CliRunner().invoke(main, ["run", case, "-q", "-o", str(folder / name), *options])
+        assert done.exit_code == 0, done.output
+    return folder
+
+
+@pytest.fixture
+def here(runs, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    return runs
+
+
+def call(*arguments, code=0):
+    result = CliRunner().invoke(main, [str(argument) for argument in arguments])
+    assert result.exit_code == code, result.output
+    assert result.stdout == ""
+    return result.stderr
+
+
+@pytest.fixture
+def uncut(monkeypatch):
+    """Look at every figure that is saved: each text lies inside it, and no two titles overlap."""
+    from matplotlib.figure import Figure
+    from matplotlib.text import Text
+
+    save, seen = Figure.savefig, []
+
+    def look_and_save(figure, *arguments, **options):
+        figure.draw_without_rendering()
+        box = figure.bbox.padded(0.5)
+        texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text()]
+        boxes = [text.get_window_extent() for text in texts if whole(text)]
+        for text in boxes:
+            assert box.x0 <= text.x0 <= text.x1 <= box.x1
+            assert box.y0 <= text.y0 <= text.y1 <= box.y1
+        titles = [axis.title.get_window_extent() for axis in figure.axes]
+        titles += [axis._left_title.get_window_extent() for axis in figure.axes]
+        titles = [title for title in titles if title.width > 1]
+        for i, title in enumerate(titles):
+            assert not any(title.overlaps(other) for other in titles[:i])
+        seen.append([text.get_text() for text in texts])
+        return save(figure, *arguments, **options)
+
+    def whole(text):
+        """Tell a text that belongs to no ticks: those outside the limits exist, unseen."""
+        return text.axes is None or text in (text.axes.xaxis.label, text.axes.yaxis.label)
+
+    monkeypatch.setattr(Figure, "savefig", look_and_save)
+    return seen
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "words"),
+    [
+        ("ring.h5", (), {"t = 0 s", "t = 0.002 s", "x", "z"}),
+        ("ring.h5", ("--view", "zy", "--style", "ribbon"), {"z (µm)", "y (µm)"}),
+        ("ring.h5", ("--colour", "curvature", "--at", "1e-3"), {"t = 0.001 s", "curvature (µm⁻¹)"}),
+        ("ring.h5", ("--overlay", "--frames", "2"), {"time (s)"}),
+        ("tail.h5", (), {"z (µm)", "y (µm)", "t = 0.004 s"}),
+        ("tail.h5", ("--overlay", "--colour", "twist"), {"twist (µm⁻¹)"}),
+        ("ring.h5", ("-w", "energy"), {"energy (g µm² s⁻²)", "time (s)", "bending"}),
+        ("ring.h5", ("-w", "speed"), {"speed (µm s⁻¹)", "centroid"}),
+        ("ring.h5", ("-w", "twist"), {"twist (µm⁻¹)", "s along ring (µm)"}),
+        ("tail.h5", ("-w", "curvature"), {"curvature (µm⁻¹)", "s along tail (µm)", "time (s)"}),
+    ],
+)
+def test_stills_are_uncut_and_labelled(name, options, words, here, uncut):
+    assert call("plot", here / name, "-o", "a.png", *options) == "wrote a.png\n"
+    assert words <= set(uncut[0])
+
+
+@pytest.mark.parametrize(
+    ("grid", "options", "words"),
+    [
+        ("plane", (), {"speed (µm s⁻¹)", "x (µm)", "y (µm)"}),
+        ("plane:xz", ("--colour", "pressure", "--arrows"), {"pressure (g µm⁻¹ s⁻²)", "z (µm)"}),
+        ("line:z", (), {"velocity (µm s⁻¹)", "pressure (g µm⁻¹ s⁻²)", "u_x", "z (µm)"}),
+        ("box", (), {"speed (µm s⁻¹)"}),
+        ("plane", ("--tracers", "--resolution", "5"), {"time (s)"}),
+    ],
+)
+def test_flows_are_uncut_and_labelled(grid, options, words, here, uncut):
+    call("flow", here / "ring.h5", "--grid", grid, "-o", "f.png", *options)
+    assert words <= set(uncut[0])
+
+
+def test_every_format_is_what_its_name_says(here):
+    heads = {"png": b"\x89PNG", "pdf": b"%PDF", "svg": b"<?xml", "gif": b"GIF89a"}
+    for kind, head in heads.items():
+        call("plot", here / "tail.h5", "-o", f"a.{kind}", "-n", "2")
+        with open(f"a.{kind}", "rb") as stream:
+            assert stream.read(len(head)) == head
+
+
+def test_movies_have_every_frame(here, tmp_path):
+    from PIL import Image
+
+    imageio_ffmpeg = pytest.importorskip("imageio_ffmpeg")
+    with open_trajectory(here / "tail.h5") as run:
+        frames = run.frames
+    said = call("plot", here / "tail.h5", "-o", "a.gif", "--fps", "10")
+    assert said.endswith("wrote a.gif\n")
+    with Image.open("a.gif") as movie:
+        assert movie.n_frames == frames
+        assert movie.info["duration"] == 100
+        shades = [np.asarray(movie.convert("L"))]
+        movie.seek(frames - 1)
+        shades.append(np.asarray(movie.convert("L")))
+    assert (shades[0] != shades[1]).sum() > 100  # it moves
+    call("plot", here / "tail.h5", "-o", "a.mp4", "--fps", "10", "-q")
+    count, seconds = imageio_ffmpeg.count_frames_and_secs("a.mp4")
+    assert (count, seconds) == (frames, pytest.approx(frames / 10, abs=0.11))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.gif", "a.mp4"]
+
+
+@pytest.mark.parametrize("name", ["a.gif", "a.mp4"])
+def test_an_interrupted_movie_leaves_the_earlier_one(name, here, tmp_path, monkeypatch):
+    (tmp_path / name).write_text("earlier")
+    from rodsim.plotting.shapes import Shapes
+
+    draw, drawn = Shapes.draw, []
+
+    def draw_two(shapes, axis, camera, frame):
+        if len(drawn) == 2:
+            raise KeyboardInterrupt
+        drawn.append(frame)
+        return draw(shapes, axis, camera, frame)
+
+    monkeypatch.setattr(Shapes, "draw", draw_two)
+    assert "interrupted" in call("plot", here / "tail.h5", "-o", name, code=75)
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+    assert (tmp_path / name).read_text() == "earlier"
+
+
+def test_a_replaced_picture_is_said(here, tmp_path):
+    (tmp_path / "a.png").write_text("earlier")
+    said = call("plot", here / "tail.h5", "-o", "a.png", "-w", "energy")
+    assert said == "wrote a.png, in place of an earlier one\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (("plot", "-o", "a.jpg"), 2, "a.jpg: must end in one of .png .pdf .svg .gif .mp4"),
+        (("plot", "-w", "energy", "-o", "a.gif"), 2, "a.gif: must end in one of .png .pdf .svg"),
+        (("plot", "-o", "ring.h5"), 2, "ring.h5: must end in"),
+        (("plot", "-o", "no/a.png"), 4, "no/a.png"),
+        (("plot", "-o", "a.png", "--view", "up"), 2, "view must be one of auto, 3d, xy"),
+        (("plot", "-o", "a.png", "--at", "7"), 2, "t = 7: the file has frames from 0 to 0.002 s"),
+        (("flow", "-o", "a.png", "--at", "-1"), 2, "frames from 0 to 0.002 s"),
+        (("flow", "-o", "a.png", "--grid", "disc"), 2, "write plane, plane:yz"),
+        (("flow", "-o", "a.vtkhdf"), 2, "must end in one of .png .pdf .svg .vti .csv .npz"),
+        (("flow", "-o", "a.csv", "--tracers", "--at", "2e-3"), 2, "--until"),
+    ],
+)
+def test_what_cannot_be_drawn_is_said_in_one_line(arguments, code, words, here, tmp_path):
+    command, *options = arguments
+    said = call(command, here / "ring.h5", *options, code=code)
+    assert words in said
+    assert len(said.splitlines()) == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_is_not_installed_is_named(here, monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    said = call("plot", here / "ring.h5", "-o", "a.png", "-w", "energy", code=2)
+    assert "pip install 'rodsim[plot]'" in said
+
+
+def test_cameras_are_rotations_and_look_where_they_say():
+    points = np.random.default_rng(3).normal(size=(50, 3)) * (0.3, 5.0, 2.0)
+    for view in VIEWS:
+        matrix = make_camera(view, points).matrix
+        assert matrix @ matrix.T == pytest.approx(np.eye(3), abs=1e-14)
+        assert np.linalg.det(matrix) == pytest.approx(1.0)  # no mirror: handedness is seen
+    seen = make_camera("zy", points).project(points)
+    assert np.array_equal(seen[:, :2], points[:, [2, 1]])
+    assert make_camera("auto", points * (0.0, 1.0, 1.0)).flat == "yz"
+    assert make_camera("auto", points).flat == ""
+
+
+def test_tubes_and_ribbons_lie_where_the_triads_say():
+    s = np.linspace(0.0, 2.5, 8)
+    position = np.stack([0 * s, 0 * s, s], axis=1)
+    angle = 0.7 * s
+    first = np.stack([np.cos(angle), np.sin(angle), 0 * s], axis=1)
+    third = np.tile([0.0, 0.0, 1.0], (8, 1))
+    director = np.stack([first, np.cross(third, first), third], axis=1)
+    corners, stripe = tube(position, director, 0.3)
+    assert np.hypot(*corners[..., :2].reshape(-1, 2).T) == pytest.approx(0.3)
+    middle = corners[stripe].reshape(7, -1, 3).mean(axis=1)
+    along = np.arctan2(middle[:, 1], middle[:, 0])
+    assert along == pytest.approx(0.5 * (angle[1:] + angle[:-1]), abs=0.03)  # round D1
+    flat = ribbon(position, director, 0.8)
+    assert flat.shape == (7, 1, 4, 3)
+    assert flat[0, 0, 0] == pytest.approx(position[0] - 0.4 * first[0])
+    assert flat[0, 0, 2] == pytest.approx(position[1] + 0.4 * first[1])
+    assert np.linalg.norm(normals(flat), axis=-1) == pytest.approx(1.0)
+
+
+def test_units_and_lengths_as_people_write_them():
+    assert pretty_unit("g um^2 s^-2") == "g µm² s⁻²"
+    assert pretty_unit("kT at 298 K") == "kT at 298 K"
+    assert [nice_length(x) for x in (1.0, 1.9, 2.3, 7.0, 0.04)] == pytest.approx([1, 1, 2, 5, 0.02])
