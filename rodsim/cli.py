@@ -13,7 +13,7 @@ import click
 import rodsim
 from rodsim.errors import RodsimError
 
-COMMANDS = ("new", "validate", "info", "run", "energy", "schema")  # as the help lists them
+COMMANDS = ("new", "validate", "info", "run", "sweep", "energy", "schema")  # as the help lists them
 EXIT_CODES = """\b
 Exit codes:
    0  done

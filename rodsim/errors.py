@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+STOPPED_EARLY = 75  # EX_TEMPFAIL: nothing is wrong, the same can be asked for again
+
 
 class RodsimError(Exception):
     """Base of all errors that are not bugs; ``exit_code`` is what the command ends with."""
@@ -51,6 +53,19 @@ class DivergedError(RodsimError):
     """The run stopped making sense; the message says where and what to do."""
 
     exit_code = 3
+
+
+class SweepError(RodsimError):
+    """Not every run of a sweep has finished. ``counts`` : how many have each status."""
+
+    def __init__(self, counts):
+        codes = {"failed": FileError.exit_code, "diverged": DivergedError.exit_code}
+        bad = [code for status, code in codes.items() if counts[status]]
+        self.exit_code = bad[0] if bad else STOPPED_EARLY
+        order = ("finished", *codes, "stopped", "waiting")
+        text = ", ".join(f"{counts[status]} {status}" for status in order if counts[status])
+        on = "; the same command goes on" if counts["stopped"] + counts["waiting"] else ""
+        super().__init__(text + on)
 
 
 class FileError(RodsimError):
