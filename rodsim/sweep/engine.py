@@ -110,15 +110,14 @@ class Sweep:
             sleep(POLL_SECONDS)
 
     def _end(self, run, future):
-        """Resume a run that someone else has stopped, such as a queue that ends a worker."""
-        problem, code = future.exception(), None
-        if problem is None:
-            code = future.result()
-        if code == STOPPED_EARLY and not self.stopping and self.attempts[run.name] < ATTEMPTS:
-            self._submit(run)
-        elif problem is not None:
-            self.ended(run, f"{type(problem).__name__}: {problem}".split("\n")[0])
-        elif code in (0, DivergedError.exit_code, STOPPED_EARLY):
-            self.ended(run, None)
-        else:
-            self.ended(run, last_line(run.log) or f"the command ended with code {code}")
+        """Resume a run that someone else has stopped or killed, such as a queue out of time."""
+        problem = future.exception()
+        if problem is not None:
+            return self.ended(run, f"{type(problem).__name__}: {problem}".split("\n")[0])
+        code = future.result()
+        cut_short = code == STOPPED_EARLY or code < 0  # negative: by a signal
+        if cut_short and not self.stopping and self.attempts[run.name] < ATTEMPTS:
+            return self._submit(run)
+        if code in (0, DivergedError.exit_code) or cut_short:
+            return self.ended(run, None)
+        return self.ended(run, last_line(run.log) or f"its command ended with code {code}")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import shlex
-import signal
 import subprocess
 import sys
 from time import monotonic, sleep
@@ -61,11 +60,14 @@ def work(sweep: str, run: Run, threads: int | None) -> int:
 
 
 def stop(sweep: str) -> None:
-    """Ask the runs of a sweep that this process has started to stop where they are, each once."""
+    """Ask the runs of a sweep that this process has started to stop where they are, each once.
+
+    SIGTERM and not SIGINT: one that comes while a run is still starting ends it, too.
+    """
     _stopped.add(sweep)
     for entry in [entry for entry in _running if entry[0] == sweep]:
         _running.remove(entry)
-        entry[1].send_signal(signal.SIGINT)
+        entry[1].terminate()
 
 
 def _execute(sweep, run, line, threads):
