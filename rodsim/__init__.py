@@ -18,6 +18,7 @@ __version__ = "0.1.0"
 _HOMES = {
     "load_case": "rodsim.case",
     "simulate": "rodsim.simulation",
+    "resume": "rodsim.simulation",
     "open_trajectory": "rodsim.output",
     "velocity": "rodsim.fluid",
     "pressure": "rodsim.fluid",

@@ -13,7 +13,8 @@ import click
 import rodsim
 from rodsim.errors import RodsimError
 
-COMMANDS = ("new", "validate", "info", "run", "sweep", "energy", "schema")  # as the help lists them
+# as the help lists them
+COMMANDS = ("new", "validate", "info", "run", "resume", "sweep", "energy", "schema")
 EXIT_CODES = """\b
 Exit codes:
    0  done
@@ -21,7 +22,7 @@ Exit codes:
    2  bad usage, or a case file missing, unreadable or invalid
    3  the run diverged
    4  an output or shape file missing, unreadable, locked or not ours, or a write failed
-  75  stopped early on purpose
+  75  stopped early on purpose: go on with rodsim resume
 """
 
 

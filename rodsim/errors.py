@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-STOPPED_EARLY = 75  # EX_TEMPFAIL: nothing is wrong, the same can be asked for again
-
 
 class RodsimError(Exception):
     """Base of all errors that are not bugs; ``exit_code`` is what the command ends with."""
@@ -55,17 +53,10 @@ class DivergedError(RodsimError):
     exit_code = 3
 
 
-class SweepError(RodsimError):
-    """Not every run of a sweep has finished. ``counts`` : how many have each status."""
+class StoppedError(RodsimError):
+    """The run was asked to stop; the message says by what and how to go on."""
 
-    def __init__(self, counts):
-        codes = {"failed": FileError.exit_code, "diverged": DivergedError.exit_code}
-        bad = [code for status, code in codes.items() if counts[status]]
-        self.exit_code = bad[0] if bad else STOPPED_EARLY
-        order = ("finished", *codes, "stopped", "waiting")
-        text = ", ".join(f"{counts[status]} {status}" for status in order if counts[status])
-        on = "; the same command goes on" if counts["stopped"] + counts["waiting"] else ""
-        super().__init__(text + on)
+    exit_code = 75
 
 
 class FileError(RodsimError):
@@ -80,3 +71,16 @@ class StepFailure(RodsimError):
     def __init__(self, reason: str, state):
         super().__init__(reason)
         self.state = state
+
+
+class SweepError(RodsimError):
+    """Not every run of a sweep has finished. ``counts`` : how many have each status."""
+
+    def __init__(self, counts):
+        kinds = {"failed": FileError, "diverged": DivergedError}
+        worst = [kind for status, kind in kinds.items() if counts[status]] or [StoppedError]
+        self.exit_code = worst[0].exit_code
+        order = ("finished", *kinds, "stopped", "waiting")
+        text = ", ".join(f"{counts[status]} {status}" for status in order if counts[status])
+        on = "; the same command goes on" if counts["stopped"] + counts["waiting"] else ""
+        super().__init__(text + on)

@@ -1,11 +1,14 @@
-"""From the run to the file: frames at their times, and what the run has cost."""
+"""From the run to the file: frames at their times, checkpoints, and what the run has cost."""
 
 import json
 from time import perf_counter
 
 import numpy as np
 
-from rodsim.output import CaseText, RodRecord, TrajectoryWriter
+from rodsim.output import CaseText, Plan, RodRecord
+
+SECONDS_BETWEEN_CHECKPOINTS = 60.0  # at most, if no frame comes
+SECONDS_BETWEEN_SYNCS = 10.0  # at least: waiting for the disk at every frame would cost too much
 
 
 def frame_times(end: float, interval: float) -> np.ndarray:
@@ -18,8 +21,8 @@ def frame_times(end: float, interval: float) -> np.ndarray:
     return times
 
 
-def create_writer(case, scene, output, overwrite: bool) -> TrajectoryWriter:
-    """Create the output file of a run, whole, with room for every frame."""
+def plan_output(case, scene, checkpoint: dict) -> Plan:
+    """Return what the output file of a run is made from, with room for every frame."""
     rods = scene.rods
     records = [
         RodRecord(
@@ -33,8 +36,7 @@ def create_writer(case, scene, output, overwrite: bool) -> TrajectoryWriter:
         for r, name in enumerate(rods.names)
     ]
     source = case.source
-    return TrajectoryWriter.create(
-        output,
+    return Plan(
         case=CaseText(source.text, json.dumps(case.resolved(), indent=1), list(source.overrides)),
         rods=records,
         times=frame_times(case.time.end, case.interval),
@@ -42,18 +44,22 @@ def create_writer(case, scene, output, overwrite: bool) -> TrajectoryWriter:
         fields=case.output.fields,
         units=case.units.model_dump(),
         density=scene.density is not None,
-        overwrite=overwrite,
+        checkpoint=checkpoint,
     )
 
 
 class Recorder:
-    """Writes every frame that a step has passed, and keeps the clock of the run."""
+    """Writes every frame that a step has passed and the checkpoints; keeps the clock of the run.
 
-    def __init__(self, writer, system, started, compile_seconds):
-        self.writer, self.system = writer, system
+    ``next_frame`` is the number of the frame to come. In a run that goes on after a kill it can be
+    one that the file has already: it is then written again, with the same bits.
+    """
+
+    def __init__(self, machine, started, compile_seconds):
+        self.system, self.integrator = machine.system, machine.integrator
         self.started, self.compile_seconds = started, compile_seconds
-        self.output_seconds = 0.0
-        self.marched = perf_counter()
+        self.writer, self.next_frame, self.output_seconds = None, 0, 0.0
+        self.marched = self._checkpointed = self._synced = perf_counter()
 
     @property
     def frames(self) -> int:
@@ -66,33 +72,62 @@ class Recorder:
 
     def passed(self, step) -> int:
         """Write the frames that lie in a step, each at its exact time; return how many."""
-        times, before = self.writer.times, self.frames
-        last = step.end.time
-        while self.frames < len(times) and times[self.frames] <= last * (1.0 + 1e-12):
-            self._write(step.number, step.at(min(times[self.frames], last)))
-        return self.frames - before
+        times, before, last = self.writer.times, self.next_frame, step.end.time
+        while self.next_frame < len(times) and times[self.next_frame] <= last * (1.0 + 1e-12):
+            self._write(step.number, step.at(min(times[self.next_frame], last)))
+        return self.next_frame - before
 
     def _write(self, number, state):
         begin = perf_counter()
-        self.writer.write_frame(self.frames, number, *self.system.observe(state))
+        self.writer.write_frame(self.next_frame, number, *self.system.observe(state))
+        self.next_frame += 1
         self.output_seconds += perf_counter() - begin
 
-    def runtime(self, integrator) -> dict:
-        """Return what the run has cost so far, as stored in ``/runtime``."""
+    @property
+    def overdue(self) -> bool:
+        """Whether the last checkpoint is too long ago."""
+        return perf_counter() - self._checkpointed > SECONDS_BETWEEN_CHECKPOINTS
+
+    def checkpoint(self, snapshot: dict) -> None:
+        """Store a snapshot of the run; now and then wait until all is on the disk."""
+        begin = self._checkpointed = perf_counter()
+        self.writer.checkpoint(snapshot)
+        if begin - self._synced > SECONDS_BETWEEN_SYNCS:
+            self.writer.update_runtime(self.runtime())
+            self.writer.sync()
+            self._synced = begin
+        self.output_seconds += perf_counter() - begin
+
+    def clock(self) -> np.ndarray:
+        """Return the seconds of the run so far: wall, compiling, solving, output."""
         now = perf_counter()
+        solving = now - self.marched - self.output_seconds
+        return np.array([now - self.started, self.compile_seconds, solving, self.output_seconds])
+
+    def restore(self, next_frame: int, clock: np.ndarray) -> None:
+        """Go on from there: seconds of earlier parts of the run count as well."""
+        wall, compiling, solving, output = clock.tolist()
+        self.next_frame, self.output_seconds = next_frame, output
+        self.started -= wall
+        self.marched -= solving + output
+        self.compile_seconds += compiling
+
+    def runtime(self) -> dict:
+        """Return what the run has cost so far, as stored in ``/runtime``."""
+        wall, compiling, solving, output = self.clock().tolist()
         sums, elastic = self.system.split_seconds()
         return {
-            "wall_seconds": now - self.started,
-            "compile_seconds": self.compile_seconds,
-            "solve_seconds": now - self.marched - self.output_seconds,
-            "output_seconds": self.output_seconds,
+            "wall_seconds": wall,
+            "compile_seconds": compiling,
+            "solve_seconds": solving,
+            "output_seconds": output,
             "sum_seconds": sums,
             "elasticity_seconds": elastic,
             "evaluations": self.system.evaluations,
-            "steps_accepted": integrator.accepted,
-            "steps_rejected": integrator.rejected,
-            "max_stages": integrator.max_stages,
-            "spectral_radius": integrator.spectral_radius,
+            "steps_accepted": self.integrator.accepted,
+            "steps_rejected": self.integrator.rejected,
+            "max_stages": self.integrator.max_stages,
+            "spectral_radius": self.integrator.spectral_radius,
             **_threads(),
         }
 

@@ -57,6 +57,8 @@ def run_summary(summary, output) -> str:
     parts = ("compile", "sum", "elasticity", "output")
     split = ", ".join(f"{part} {cost[f'{part}_seconds']:.2f}" for part in parts)
     lines.append(f"{total:.2f} s of wall time: {split} s")
+    if summary.status == "stopped":
+        lines.append(f"go on with: rodsim resume {output}")
     return "\n".join(lines)
 
 

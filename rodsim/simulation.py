@@ -1,4 +1,4 @@
-"""The run: evaluate, step, check, write."""
+"""The run: evaluate, step, check, write. A run that begins and one that goes on share one path."""
 
 from __future__ import annotations
 
@@ -6,10 +6,13 @@ import warnings
 from dataclasses import dataclass, field
 from time import perf_counter
 
-from rodsim.errors import DivergedError, StepFailure
+from rodsim.continuation import open_past
+from rodsim.errors import DivergedError, StepFailure, StoppedError
+from rodsim.output import TrajectoryWriter
 from rodsim.progress import Silent
-from rodsim.recorder import Recorder, create_writer
+from rodsim.recorder import Recorder, plan_output
 from rodsim.rods import build_scene
+from rodsim.snapshot import capture, restore
 
 
 @dataclass
@@ -33,6 +36,7 @@ def simulate(
     overwrite=False,
     threads=None,
     force=False,
+    stop=str,
     progress=None,
     notify=warnings.warn,
     summary=None,
@@ -46,6 +50,7 @@ def simulate(
         on (``Summary.moved``), unless ``overwrite``.
     threads : number of threads, or None for as many as the scene is worth.
     force : run also with a fixed step above its limit of stability.
+    stop : called after each step; returns why the run is to stop there, or an empty text.
     progress : object with ``update(fraction, note)``, or None for none.
     notify : called with the text of each warning.
     summary : a :class:`Summary` to fill in, for callers that want it after an error as well.
@@ -55,6 +60,7 @@ def simulate(
     CaseError : the geometry of the scene cannot be used, or a fixed step is above its limit.
     FileError : the output cannot be written.
     DivergedError : the run stopped; the frames before that are in the file, its status is set.
+    StoppedError : ``stop`` gave a reason; :func:`resume` goes on from there.
     """
     summary = summary or Summary()
     started = perf_counter() - summary.compile_seconds
@@ -63,11 +69,45 @@ def simulate(
     with machine.threads(threads):
         for problem in machine.step_warnings():
             notify(str(problem))
-        with create_writer(case, scene, output, overwrite) as writer:
-            summary.moved = str(writer.renamed_to) if writer.renamed_to else None
-            compiling = compile_seconds + summary.compile_seconds
-            recorder = Recorder(writer, machine.system, started, compiling)
-            _record(machine, case.time.end, recorder, progress or Silent(), summary)
+        recorder = Recorder(machine, started, compile_seconds + summary.compile_seconds)
+        plan = plan_output(case, scene, capture(machine, recorder, scene.initial))
+        with TrajectoryWriter.create(output, plan, overwrite) as recorder.writer:
+            moved = recorder.writer.renamed_to
+            summary.moved = str(moved) if moved else None
+            _record(machine, scene.initial, recorder, stop, progress or Silent(), summary)
+    return summary
+
+
+def resume(
+    output,
+    *,
+    overrides=(),
+    threads=None,
+    stop=str,
+    progress=None,
+    notify=warnings.warn,
+    summary=None,
+) -> Summary:
+    """Go on with a run where it stopped or was killed, in the same file, with the same bits.
+
+    ``overrides`` may set a later ``time.end`` and add to ``output.fields``, nothing else; the rest
+    is as in :func:`simulate`. Raises CaseError for other changes, FileError for a file that cannot
+    be gone on with. A finished run without changes is left as it is.
+    """
+    summary = summary or Summary()
+    started = perf_counter() - summary.compile_seconds
+    with open_past(output, overrides) as past:
+        if past.complete:
+            summary.status, summary.frames = "finished", past.run.frames
+            return summary
+        for text in past.warnings():
+            notify(text)
+        scene = build_scene(past.case, past.shape)
+        machine, compile_seconds = _compile(past.case, scene, bool(past.snapshot["force"]))
+        recorder = Recorder(machine, started, compile_seconds + summary.compile_seconds)
+        state = restore(machine, recorder, past.snapshot)
+        with machine.threads(threads), past.writer(machine) as recorder.writer:
+            _record(machine, state, recorder, stop, progress or Silent(), summary)
     return summary
 
 
@@ -79,28 +119,36 @@ def _compile(case, scene, force):
     return Machine(case, scene, force), perf_counter() - begin
 
 
-def _record(machine, end, recorder, progress, summary):
+def _record(machine, state, recorder, stop, progress, summary):
     """March to the end; however that goes, file and summary say how far it came."""
     summary.status = "stopped"  # by whatever comes up the stack, unless named below
     try:
-        _march(machine, end, recorder, progress)
+        _march(machine, state, recorder, stop, progress)
         summary.status = "finished"
     except DivergedError:
         summary.status = "diverged"
         raise
     finally:
-        summary.frames, summary.runtime = recorder.frames, recorder.runtime(machine.integrator)
+        summary.frames, summary.runtime = recorder.frames, recorder.runtime()
         recorder.writer.finish(summary.status, summary.runtime)
 
 
-def _march(machine, end, recorder, progress):
-    integrator, watch, state = machine.integrator, machine.watch, machine.system.scene.initial
-    recorder.initial(state)
+def _march(machine, state, recorder, stop, progress):
+    """Step from ``state`` to the end of the case: a first frame, or one after a checkpoint."""
+    integrator, watch, end = machine.integrator, machine.watch, machine.case.time.end
+    if recorder.next_frame == 0:
+        recorder.initial(state)
     try:
         for step in integrator.steps(state, end):
             watch.check(step)
-            if recorder.passed(step):
-                watch.frame(recorder.frames - 1)
+            new = recorder.passed(step)
+            if new:
+                watch.frame(recorder.next_frame - 1)
+            reason = stop()
+            if new or reason or recorder.overdue:
+                recorder.checkpoint(capture(machine, recorder, step.end))
             progress.update(step.end.time / end, f"t = {step.end.time:.4g}")
+            if reason and step.end.time < end:
+                raise StoppedError(f"stopped by {reason} at t = {step.end.time:.6g} of {end:g}")
     except StepFailure as failure:
         watch.stop(failure, integrator.accepted + 1)

@@ -32,6 +32,19 @@ class Watch:
         self.farthest = FARTHEST * max(extent, system.scene.length_scale)
         self.last_good_frame = 0
 
+    def state(self) -> dict:
+        """Return what later checks depend on, for a checkpoint."""
+        rates = self._rates.state() if self._rates else {}
+        bounds = {"centre": self.centre, "farthest": self.farthest}
+        return {**bounds, "last_good_frame": self.last_good_frame, **rates}
+
+    def restore(self, state: dict) -> None:
+        """Take over what ``state`` returned."""
+        self.centre, self.farthest = state["centre"], state["farthest"]
+        self.last_good_frame = state["last_good_frame"]
+        if self._rates:
+            self._rates.restore(state)
+
     def check(self, step: Step) -> None:
         """Raise DivergedError if the state at the end of a step means nothing."""
         state = step.end

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rodsim.output import CaseText, RodRecord, TrajectoryWriter
+from rodsim.output import CaseText, Plan, RodRecord, TrajectoryWriter
 from rodsim.output.layout import FIELDS
 
 RODS = [
@@ -14,7 +14,10 @@ POINTS, TRACERS, UNITS = 9, 7, {"length": "um", "mass": "g", "time": "s"}
 CASE = CaseText("title: écoute\n", '{"title": "écoute"}', ["time.end=1.7", "rods.zeta.points=4"])
 
 
-def create(path, **options):
+STATE = {"X": np.zeros((3, 9)), "time": 0.0, "step": 0}
+
+
+def create(path, overwrite=False, **options):
     settings = {
         "case": CASE,
         "rods": RODS,
@@ -23,8 +26,9 @@ def create(path, **options):
         "fields": tuple(FIELDS),
         "units": UNITS,
         "density": True,
+        "checkpoint": STATE,
     }
-    return TrajectoryWriter.create(path, **settings | options)
+    return TrajectoryWriter.create(path, Plan(**settings | options), overwrite)
 
 
 def frame(index):

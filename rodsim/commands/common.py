@@ -1,5 +1,6 @@
 """What several commands share: arguments, options, loading a case."""
 
+from contextlib import contextmanager
 from pathlib import Path
 
 import click
@@ -18,6 +19,35 @@ threads_option = click.option(
     type=click.IntRange(1, 1024),
     help="Number of threads; by default as many as the scene is worth.",
 )
+
+
+def _seconds(ctx, param, text):
+    from rodsim.stopping import parse_duration
+
+    try:
+        return None if text is None else parse_duration(text)
+    except ValueError as error:
+        raise click.BadParameter(str(error)) from None
+
+
+max_wall_option = click.option(
+    "--max-wall",
+    callback=_seconds,
+    metavar="TIME",
+    help="Stop in time before so much wall time has gone, e.g. 3h50m; rodsim resume goes on.",
+)
+
+
+@contextmanager
+def announce(summary, output, quiet):
+    """Say how a run has ended and what it has cost, however it ends."""
+    from rodsim import reports
+
+    try:
+        yield
+    finally:
+        if not quiet and summary.runtime:
+            click.echo(reports.run_summary(summary, output), err=True)
 
 
 def load(path, overrides):

@@ -5,8 +5,10 @@ from pathlib import Path
 import click
 
 from rodsim.commands.common import (
+    announce,
     case_argument,
     load,
+    max_wall_option,
     prepare_numba,
     say_warnings,
     set_option,
@@ -27,14 +29,17 @@ from rodsim.commands.common import (
 )
 @set_option
 @threads_option
+@max_wall_option
 @click.option("--overwrite", is_flag=True, help="Replace an existing output file.")
 @click.option("--force", is_flag=True, help="Run also with a fixed step above its limit.")
 @click.option("--dry-run", is_flag=True, help="Check the case and say what it would do, no more.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress and no summary.")
-def run(case_path, output, overrides, threads, overwrite, force, dry_run, quiet):
+def run(case_path, output, overrides, threads, max_wall, overwrite, force, dry_run, quiet):
     """Run a case and write its trajectory, energies and balances to an HDF5 file."""
     from rodsim import reports
+    from rodsim.stopping import Stopper
 
+    stop = Stopper(max_wall)
     case = load(case_path, overrides)
     say_warnings(case)
     prepare_numba()
@@ -48,18 +53,16 @@ def run(case_path, output, overrides, threads, overwrite, force, dry_run, quiet)
     from rodsim.simulation import Summary, simulate
 
     summary = Summary(compile_seconds=compiled)
-    try:
-        with make_progress(case.title or case_path.name, quiet) as progress:
-            simulate(
-                case,
-                output,
-                overwrite=overwrite,
-                threads=threads,
-                force=force,
-                notify=warn,
-                progress=progress,
-                summary=summary,
-            )
-    finally:
-        if not quiet and summary.runtime:
-            click.echo(reports.run_summary(summary, output), err=True)
+    label = case.title or case_path.name
+    with announce(summary, output, quiet), stop, make_progress(label, quiet) as progress:
+        simulate(
+            case,
+            output,
+            overwrite=overwrite,
+            threads=threads,
+            force=force,
+            stop=stop,
+            notify=warn,
+            progress=progress,
+            summary=summary,
+        )

@@ -59,3 +59,16 @@ class Defect:
     def accept(self) -> None:
         """Keep the step under trial."""
         self._behind = [self._trial, *self._behind[:1]]
+
+    def state(self, numbers: int) -> dict:
+        """Return the memory of the steps behind, for a checkpoint; no step has size 0."""
+        behind = [*self._behind, *[(np.zeros(numbers), 0.0)] * 2][:2]
+        return {
+            "thirds": np.array([third for third, _ in behind]),
+            "third_sizes": np.array([size for _, size in behind]),
+        }
+
+    def restore(self, state: dict) -> None:
+        """Take over what ``state`` returned."""
+        steps = zip(state["thirds"], state["third_sizes"].tolist(), strict=True)
+        self._behind = [(third, size) for third, size in steps if size > 0.0]

@@ -17,6 +17,14 @@ class FixedStep:
         self.accepted = self.rejected = 0
         self.max_stages = self.stages
 
+    def state(self) -> dict:
+        """Return what the steps to come depend on, for a checkpoint, and the counters."""
+        return {"accepted": self.accepted, "spectral_radius": self.spectral_radius}
+
+    def restore(self, state: dict) -> None:
+        """Take over what ``state`` returned."""
+        self.accepted, self.spectral_radius = state["accepted"], state["spectral_radius"]
+
     def increment(self, state: State):
         """Return the increments of one step from ``state``."""
         raise TypeError("a method defines its increment")

@@ -68,6 +68,15 @@ class RateWatch:
         self._radius = SpectralRadius(system)
         self._largest = 0.0
 
+    def state(self) -> dict:
+        """Return what later estimates depend on, for a checkpoint."""
+        return {"largest": self._largest, **self._radius.state()}
+
+    def restore(self, state: dict) -> None:
+        """Take over what ``state`` returned."""
+        self._largest = state["largest"]
+        self._radius.restore(state)
+
     def follow(self, step) -> None:
         """Check the rate if the increments have doubled since it was last checked."""
         largest = float(np.abs(step.increment * self.system.weights).max())

@@ -92,13 +92,15 @@ class RKC:
         self.spectral_radius = math.nan
         self._radius = SpectralRadius(system)
         self._size = None
+        self._rate = None  # velocities at the end of the last step
         self._previous = None  # (step size, error) of the last accepted and corrected step
         self._defect = Defect()
 
     def steps(self, state: State, end: float):
         """Yield accepted steps of adapted size until ``end`` is reached exactly."""
-        system = self.system
-        f0 = system.velocities(state.time, state, system.zeros(), system.zeros())
+        system, f0 = self.system, self._rate
+        if f0 is None:
+            f0 = system.velocities(state.time, state, system.zeros(), system.zeros())
         while state.time < end:
             if self.accepted % REFRESH == 0:
                 self._estimate_radius(state, f0)
@@ -107,10 +109,37 @@ class RKC:
             size, y, f1, velocities = self._accepted(state, f0, end)
             self._defect.accept()
             self.accepted += 1
+            self._rate = velocities
             time = end if size == end - state.time else state.time + size
             after = system.state_at(state, time, y)
             yield Step(system, self.accepted, state, size, y, after, (f0, f1))
             state, f0 = after, velocities
+
+    def state(self) -> dict:
+        """Return all memory and the counters, for a checkpoint; what is not there yet is NaN."""
+        numbers, nothing = self.system.size, math.nan
+        return {
+            "accepted": self.accepted,
+            "rejected": self.rejected,
+            "max_stages": self.max_stages,
+            "spectral_radius": self.spectral_radius,
+            "size": nothing if self._size is None else self._size,
+            "previous": np.array(self._previous or (nothing, nothing)),
+            "rate": np.full(numbers, nothing) if self._rate is None else self._rate,
+            **self._radius.state(),
+            **self._defect.state(numbers),
+        }
+
+    def restore(self, state: dict) -> None:
+        """Take over what ``state`` returned."""
+        for name in ("accepted", "rejected", "max_stages", "spectral_radius"):
+            setattr(self, name, state[name])
+        self._size = None if math.isnan(state["size"]) else state["size"]
+        previous = state["previous"].tolist()
+        self._previous = None if math.isnan(previous[0]) else tuple(previous)
+        self._rate = None if np.isnan(state["rate"]).any() else state["rate"]
+        self._radius.restore(state)
+        self._defect.restore(state)
 
     def attempt(self, state: State, f0: np.ndarray, size: float):
         """Return (increment, rate at its end, velocities at its end, scaled error) of a trial."""

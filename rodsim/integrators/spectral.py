@@ -23,6 +23,14 @@ class SpectralRadius:
         self.system = system
         self.vector = None
 
+    def state(self) -> dict:
+        """Return what later estimates depend on, for a checkpoint; no vector yet is zeros."""
+        return {"vector": np.zeros(self.system.rod_size) if self.vector is None else self.vector}
+
+    def restore(self, state: dict) -> None:
+        """Take over what ``state`` returned."""
+        self.vector = state["vector"] if state["vector"].any() else None
+
     def estimate(self, state: State, rate: np.ndarray, tolerance: float | None = None) -> float:
         """Return rho (1/time) at ``state``, where dy/dt is ``rate``; NaN if it is not finite.
 

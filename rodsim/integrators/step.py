@@ -53,3 +53,12 @@ class Integrator(Protocol):
 
     def steps(self, state: State, end: float):
         """Yield :class:`Step` after :class:`Step` from ``state`` to ``end``."""
+
+    def state(self) -> dict:
+        """Return what the steps to come depend on beside the state of the rods, and the counters.
+
+        Arrays and numbers by name, always of the same shapes and types. Between two steps.
+        """
+
+    def restore(self, state: dict) -> None:
+        """Take over what ``state`` returned: ``steps`` then goes on with the same bits."""

@@ -17,19 +17,20 @@ import numpy as np
 
 from rodsim.errors import FileError
 from rodsim.output import layout
+from rodsim.output.checkpoint import allocate
 from rodsim.output.layout import CLOCK, Plan
 from rodsim.output.vtkhdf import build_view
 from rodsim.units import unit_text
 
-# Beside the values: time, step and offsets of ParaView's view per frame, the two checkpoints per
-# point, headers per file. Generous: what is reserved and not used is given back at the end.
-FRAME_BYTES, POINT_BYTES, FILE_BYTES = 120, 1000, 2**17
+# Beside the values: time, step and offsets of ParaView's view per frame, its lines per point,
+# groups per rod, headers per file. Generous: what is not used is given back at the end.
+FRAME_BYTES, POINT_BYTES, ROD_BYTES, FILE_BYTES = 130, 40, 3000, 2**17
 
 abandoned = []  # files that could not be written: HDF5 can crash the process in closing them
 
 
 def build_file(path: Path, plan: Plan) -> h5py.File:
-    """Create ``path``, which must not exist, and return it open, complete and on the disk.
+    """Create ``path``, which must not exist, and return it open and complete.
 
     Raises FileError where it cannot fit or cannot be written; then no file is left.
     """
@@ -62,7 +63,9 @@ def trim(file: h5py.File) -> None:
 def _room(plan):
     texts = (plan.case.source, plan.case.resolved, *plan.case.overrides)
     count = plan.value_bytes() + FRAME_BYTES * len(plan.times) + 4 * sum(map(len, texts))
-    return count + POINT_BYTES * (plan.points + plan.tracers) + FILE_BYTES
+    count += 2 * sum(np.asarray(value).nbytes for value in plan.checkpoint.values())
+    count += POINT_BYTES * (plan.points + plan.tracers) + ROD_BYTES * len(plan.rods)
+    return count + FILE_BYTES
 
 
 def _size(count):
@@ -90,10 +93,9 @@ def _fill(file, plan):
     _add_rods(file.create_group("rods"), plan.rods)
     _add_series(file, plan)
     _add_runtime(file.create_group("runtime"))
-    file.create_group("checkpoint")
+    allocate(file.create_group("checkpoint"), plan.checkpoint)
     build_view(file, plan)
     file.flush()
-    os.fsync(file.id.get_vfd_handle())
 
 
 def _add_root(file):
@@ -113,7 +115,8 @@ def _add_case(group, plan):
     group.create_dataset("source", data=plan.case.source, dtype=text)
     group.create_dataset("resolved", data=plan.case.resolved, dtype=text)
     group.create_dataset("overrides", (len(overrides),), data=overrides, dtype=text)
-    group.create_dataset("resumes", (0,), maxshape=(None,), dtype=text)
+    group["times"] = plan.times
+    group["resumes"] = np.zeros(layout.MOST_RESUMES, dtype=f"S{layout.RESUME_BYTES}")
     for kind in ("length", "mass", "time"):
         group.attrs[f"{kind}_unit"] = plan.units[kind]
 

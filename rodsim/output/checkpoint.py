@@ -1,4 +1,4 @@
-"""The integrator's state, stored twice in turn: a kill while one is written leaves the other.
+"""The state of a run, stored twice in turn: a kill while one is written leaves the other.
 
 ``/checkpoint/a`` and ``/checkpoint/b`` hold one dataset per entry and ``seal``: serial number and
 CRC32 of everything, written last. Only a slot whose seal matches its contents counts.
@@ -11,43 +11,71 @@ from zlib import crc32
 import h5py
 import numpy as np
 
+from rodsim.errors import FileError
+from rodsim.output.guarded import GuardedFile
+
 SLOTS = ("a", "b")
 SEAL = "seal"
 
 
+def allocate(group: h5py.Group, state: dict) -> None:
+    """Make both slots for states with the names, shapes and types of this one."""
+    arrays = _arrays(state)
+    for name, array in arrays.items():
+        if array.dtype.kind not in "fiub" or name == SEAL:
+            raise ValueError(f"checkpoint: {name} cannot be stored")
+    for slot in map(group.create_group, SLOTS):
+        for name, array in arrays.items():
+            slot[name] = np.zeros_like(array)
+        slot[SEAL] = np.zeros(2, dtype=np.int64)
+
+
 class CheckpointWriter:
-    """Writes states of one shape in turn to the two slots of an empty ``/checkpoint``."""
+    """Writes states of one shape in turn to the two slots of ``/checkpoint``.
+
+    Datasets stay open and are written through HDF5's own calls: there is one at every frame.
+    """
 
     def __init__(self, group: h5py.Group):
-        self._group, self._serial = group, 0
+        self._file = group.file
+        self._slots = [{name: slot[name] for name in slot} for slot in _slots(group)]
+        self._serial = max((int(slot[SEAL][0]) for slot in self._slots), default=0)
+        whole = [_whole_serial(slot) for slot in self._slots]
+        self._turn = whole.index(min(whole)) if whole else 0  # never over the newest whole one
 
     def write(self, state: dict) -> None:
         """Store arrays and numbers by name; raises ValueError where names or shapes change."""
-        arrays = {name: np.asarray(value) for name, value in sorted(state.items())}
-        if len(self._group) == 0:
-            self._create(arrays)
-        slot = self._group[SLOTS[self._serial % 2]]
-        if set(slot) != {*arrays, SEAL}:
+        arrays, slot = _arrays(state), self._slots[self._turn] if self._slots else {SEAL: None}
+        if slot.keys() != {*arrays, SEAL}:
             raise ValueError(f"checkpoint has {sorted(arrays)}, its file {sorted(slot)}")
         for name, array in arrays.items():
             if (slot[name].shape, slot[name].dtype) != (array.shape, array.dtype):
                 raise ValueError(f"checkpoint: {name} changed its shape or type")
         for name, array in arrays.items():
-            slot[name][...] = array
-        self._group.file.flush()
+            _put(slot[name], array)
+        self._file.flush()
         self._serial += 1
-        slot[SEAL][:] = self._serial, checksum(self._serial, arrays)
-        self._group.file.flush()
+        _put(slot[SEAL], np.array([self._serial, checksum(self._serial, arrays)], dtype=np.int64))
+        self._file.flush()
+        self._turn = 1 - self._turn
 
-    def _create(self, arrays):
-        for name, array in arrays.items():
-            if array.dtype.kind not in "fiub" or name == SEAL:
-                raise ValueError(f"checkpoint: {name} cannot be stored")
-        for slot in map(self._group.create_group, SLOTS):
-            for name, array in arrays.items():
-                slot[name] = np.zeros_like(array)
-            slot[SEAL] = np.zeros(2, dtype=np.int64)
-        self._group.file.flush()
+
+def read_checkpoint(file: GuardedFile) -> dict | None:
+    """Return the newest state that is whole, single numbers as such, or None if there is none."""
+    found = []
+    for slot in (f"checkpoint/{name}" for name in SLOTS):
+        try:
+            serial, crc = file.array(f"{slot}/{SEAL}", "i", (2,)).tolist()
+            names = [name for name in file.names(slot) if name != SEAL]
+            arrays = {n: file.array(f"{slot}/{n}", "fiub", None) for n in names}
+        except FileError:
+            continue  # never written, or torn: that is what the other slot is for
+        if serial > 0 and checksum(serial, arrays) == crc:
+            found.append((serial, arrays))
+    if not found:
+        return None
+    arrays = max(found, key=lambda slot: slot[0])[1]
+    return {name: array if array.shape else array.item() for name, array in arrays.items()}
 
 
 def checksum(serial: int, arrays: dict[str, np.ndarray]) -> int:
@@ -55,14 +83,26 @@ def checksum(serial: int, arrays: dict[str, np.ndarray]) -> int:
     crc = crc32(str(serial).encode())
     for name, array in sorted(arrays.items()):
         crc = crc32(f"{name} {array.dtype.str} {array.shape}".encode(), crc)
-        crc = crc32(np.ascontiguousarray(array).tobytes(), crc)
+        crc = crc32(np.ascontiguousarray(array), crc)
     return crc
 
 
-def newest(slots: list[tuple[int, int, dict[str, np.ndarray]]]) -> dict | None:
-    """Return the newest of (serial, crc, arrays) that is whole; single numbers as such."""
-    whole = [slot for slot in slots if slot[0] > 0 and checksum(slot[0], slot[2]) == slot[1]]
-    if not whole:
-        return None
-    arrays = max(whole, key=lambda slot: slot[0])[2]
-    return {name: array if array.shape else array.item() for name, array in arrays.items()}
+def _whole_serial(slot):
+    """Return the serial number of a slot, 0 if it is torn or was never written."""
+    arrays = {name: data[()] for name, data in slot.items() if name != SEAL}
+    serial, crc = slot[SEAL][:].tolist()
+    return serial if checksum(serial, _arrays(arrays)) == crc else 0
+
+
+def _slots(group):
+    return [group[name] for name in SLOTS if name in group]
+
+
+def _arrays(state):
+    """Return the entries as contiguous arrays, by name."""
+    # ascontiguousarray alone would turn single numbers into lists of one
+    return {name: np.asarray(value, order="C") for name, value in sorted(state.items())}
+
+
+def _put(dataset, array):
+    dataset.id.write(h5py.h5s.ALL, h5py.h5s.ALL, array)

@@ -12,6 +12,7 @@ from rodsim.errors import FileError
 # Deflate packs a thousandfold at best: a dataset larger than that has no contents in this file,
 # and reading it would only fill the memory.
 PACKING = 2000
+OWN_FILTERS = {1, 2, 3, 4, 5, 6, 32000}  # deflate ... scale-offset, and LZF, which h5py brings
 ATTRIBUTE_KINDS = {str: "", bool: "b", int: "iu", float: "f"}
 
 
@@ -32,6 +33,12 @@ class GuardedFile:
             self._file = h5py.File(self.path, "r", locking=False)
         except OSError as error:
             raise FileError(f"{path}: cannot be opened, damaged or cut short ({error})") from error
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        self.close()
 
     def close(self) -> None:
         """Close the file."""
@@ -90,6 +97,12 @@ class GuardedFile:
             raise self.damaged(f"{name} has {len(data)} frames of {at_least}")
         return self._contents(name, data, rows)
 
+    def contiguous(self, name: str, kinds: str, shape) -> None:
+        """Check a dataset that is to be written: in one piece, as the run has made it."""
+        self.array(name, kinds, shape, np.s_[:0] if shape else ())
+        if self._dataset(name).chunks is not None:
+            raise FileError(f"{self.path}: {name} was packed by another program: a copy to read")
+
     def text(self, name: str) -> str:
         """Return a text dataset."""
         return self._decoded(name, ())
@@ -114,6 +127,8 @@ class GuardedFile:
         data = self._node(name, h5py.Dataset)
         if data.external or data.is_virtual:
             raise self.damaged(f"{name} lies outside this file")
+        if _foreign_filter(data):
+            raise self.damaged(f"{name} is packed in a way that only a plug-in can read")
         if data.shape is None or data.nbytes > PACKING * data.id.get_storage_size():
             raise self.damaged(f"{name} is empty")
         return data
@@ -131,6 +146,13 @@ class GuardedFile:
         if not isinstance(node, kind):
             raise self.damaged(f"{name} is not a {kind.__name__.lower()}")
         return node
+
+
+def _foreign_filter(data):
+    """Return whether HDF5 would have to look for a plug-in to read a dataset."""
+    properties = data.id.get_create_plist()
+    codes = {properties.get_filter(i)[0] for i in range(properties.get_nfilters())}
+    return not codes <= OWN_FILTERS
 
 
 def _fits(found, expected):

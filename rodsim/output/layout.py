@@ -16,6 +16,7 @@ FILETYPE = "rodsim"
 FORMAT = 1
 STATUS = ("running", "finished", "stopped", "diverged")
 TEXT_BYTES = 32  # texts that change have a fixed length: they are changed in place, never moved
+MOST_RESUMES, RESUME_BYTES = 100, 160  # room for the history; the last entry is used again
 
 TRAJECTORY = "particles/trajectory"
 TRACERS = "particles/tracers/position"
@@ -95,7 +96,13 @@ class Series:
 
 @dataclass(frozen=True)
 class Plan:
-    """All that is known of an output file before the run: its texts, its sizes, its times."""
+    """All that is known of an output file before the run: its texts, its sizes, its times.
+
+    times : (T,) of all frames to come. tracers : their number P. fields : names out of ``FIELDS``;
+    position is always stored. units : names of the units of ``length``, ``mass`` and ``time``.
+    density : whether kinetic energy is stored. checkpoint : the first state of the run, which all
+    later ones are like: arrays and numbers by name.
+    """
 
     case: CaseText
     rods: list[RodRecord]
@@ -104,6 +111,7 @@ class Plan:
     fields: tuple[str, ...]
     units: dict[str, str]
     density: bool
+    checkpoint: dict
 
     @property
     def points(self) -> int:

@@ -8,7 +8,7 @@ import numpy as np
 
 from rodsim.errors import FileError
 from rodsim.output import layout
-from rodsim.output.checkpoint import SEAL, SLOTS, newest
+from rodsim.output.checkpoint import read_checkpoint
 from rodsim.output.guarded import GuardedFile
 from rodsim.output.layout import CLOCK, OBSERVABLES, TRACERS, TRAJECTORY, RodRecord
 
@@ -30,6 +30,7 @@ class Trajectory:
     Attributes
     ----------
     frames : T. points : N. time, steps : (T,), of each frame. rods : list of RodRecord, in order.
+    planned : times of all frames the run is to have.
     status : running, finished, stopped or diverged. version, created, format : of the file.
     case_source, case_resolved : text. overrides, resumes : lists of text.
     units : names of the units of ``length``, ``mass``, ``time``. runtime : what the run has cost.
@@ -113,17 +114,8 @@ class Trajectory:
         return self._file.attribute(f"{where}/value", "units", str)
 
     def checkpoint(self) -> dict | None:
-        """Return the newest whole state of the integrator, or None if there is none."""
-        slots = []
-        for slot in (f"checkpoint/{name}" for name in SLOTS):
-            try:
-                serial, crc = self._file.array(f"{slot}/{SEAL}", "i", (2,))
-                names = [name for name in self._file.names(slot) if name != SEAL]
-                arrays = {n: self._file.array(f"{slot}/{n}", "fiub", None) for n in names}
-            except FileError:
-                continue  # never written, or torn: that is what the other slot is for
-            slots.append((int(serial), int(crc), arrays))
-        return newest(slots)
+        """Return the newest whole state of the run, or None if there is none."""
+        return read_checkpoint(self._file)
 
     def _read_header(self):
         file = self._file
@@ -145,7 +137,8 @@ class Trajectory:
         if self.status not in layout.STATUS:
             raise file.damaged(f"its status is {self.status!r}")
         self.case_source, self.case_resolved = file.text("case/source"), file.text("case/resolved")
-        self.overrides, self.resumes = file.texts("case/overrides"), file.texts("case/resumes")
+        self.overrides = file.texts("case/overrides")
+        self.resumes = [text for text in file.texts("case/resumes") if text]
         self.units = {
             kind: file.attribute("case", f"{kind}_unit", str) for kind in ("length", "mass", "time")
         }
@@ -161,6 +154,7 @@ class Trajectory:
         self.points = sum(rod.count for rod in self.rods)
         self.time = self._rows(f"{CLOCK}/time", "f", ())
         self.steps = self._rows(f"{CLOCK}/step", "i", ())
+        self.planned = self._file.array("case/times", "f", (None,), at_least=self.frames)
         if self.frames < 0 or not np.isfinite(self.time).all():
             raise self._file.damaged("frames without a time")
 

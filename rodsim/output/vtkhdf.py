@@ -52,6 +52,20 @@ def count_frames(view: h5py.Group, frames: int) -> None:
     view["Steps"].attrs.modify("NSteps", np.int64(frames))
 
 
+def show_frames(view: h5py.Group, times: np.ndarray) -> None:
+    """Make exactly these frames visible, wherever a kill has left the view."""
+    values = view["Steps/Values"]
+    if len(times) == 0:
+        return
+    if len(values) > len(times):
+        values.resize((len(times),))
+    count_frames(view, len(times))
+    view.file.flush()
+    values.resize((len(times),))
+    values[:] = times
+    view.file.flush()
+
+
 def _add_view(group, name, value, pick):
     frames, points = value.shape[:2]
     view = h5py.VirtualLayout((frames * points, 3), np.float64)

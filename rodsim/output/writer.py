@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -31,24 +32,17 @@ class TrajectoryWriter:
 
     def __init__(self, path: Path, file: h5py.File, plan: Plan, lock: OutputLock):
         self.path, self.times, self.renamed_to = path, plan.times, None
-        self.committed = 0
+        self.committed = int(file["committed"][()])
         self._file, self._plan, self._lock = file, plan, lock
         self._values = {s.where: file[f"{s.where}/value"] for s in plan.stored()}
         self._checkpoint = CheckpointWriter(file["checkpoint"])
 
     @classmethod
-    def create(
-        cls, path, *, case, rods, times, tracers, fields, units, density, overwrite=False
-    ) -> TrajectoryWriter:
+    def create(cls, path, plan: Plan, overwrite=False, fill=None) -> TrajectoryWriter:
         """Build the file whole under a temporary name, then give it its own.
 
-        Parameters
-        ----------
-        case : CaseText. rods : list of RodRecord. times : (T,) of all frames to come.
-        tracers : number P. fields : names out of ``layout.FIELDS``; position is always stored.
-        units : names of the units of ``length``, ``mass`` and ``time``.
-        density : whether kinetic energy is stored.
         overwrite : replace an output that exists; else it is renamed (see ``renamed_to``).
+        fill : called with the writer before the file appears.
 
         Raises
         ------
@@ -60,28 +54,37 @@ class TrajectoryWriter:
             raise FileError(f"{path}: there is no folder {path.parent}")
         if path.exists() and not path.is_file():
             raise FileError(f"{path}: exists and is not a file")
-        times = np.array(times, dtype=float)
-        plan = Plan(case, list(rods), times, tracers, tuple(fields), dict(units), density)
         lock = OutputLock(path)
         lock.acquire()
+        return cls.create_locked(path, plan, lock, overwrite, fill)
+
+    @classmethod
+    def create_locked(cls, path, plan, lock, overwrite, fill) -> TrajectoryWriter:
+        """Do what ``create`` does with a lock that is held; it is given back on an error."""
         try:
-            return cls._build(path, plan, lock, overwrite)
+            return cls._build(path, plan, lock, overwrite, fill)
         except (OSError, FileError) as error:
             lock.release()
-            reason = getattr(error, "strerror", None) or error
+            cause = error.__cause__ if isinstance(error.__cause__, OSError) else error
+            reason = getattr(cause, "strerror", None) or cause
             raise FileError(f"{path}: cannot be written: {reason}") from error
         except BaseException:
             lock.release()
             raise
 
     @classmethod
-    def _build(cls, path, plan, lock, overwrite):
+    def _build(cls, path, plan, lock, overwrite, fill):
         building = temporary_name(path)
         writer = cls(path, build_file(building, plan), plan, lock)
         try:
+            writer.checkpoint(plan.checkpoint)
+            if fill is not None:
+                fill(writer)
+            writer.sync()
             writer.renamed_to = take_place(building, path, overwrite)
         except BaseException:
-            writer._file.close()
+            if writer._file is not None:
+                writer._file.close()
             building.unlink(missing_ok=True)
             raise
         return writer
@@ -108,7 +111,7 @@ class TrajectoryWriter:
             raise ValueError(f"frame {index}: have {self.committed} of {len(self.times)}")
         rows = {s.where: _row(s, fields, -1) for s in self._plan.fields_stored()}
         rows |= {s.where: _row(s, observables, 0) for s in self._plan.observables_stored()}
-        with self._writing() as file:
+        with self.writing() as file:
             for where, row in rows.items():
                 self._values[where][index] = row
             file[f"{CLOCK}/time"][index] = self.times[index]
@@ -117,20 +120,26 @@ class TrajectoryWriter:
             self._commit(file, index)
 
     def checkpoint(self, state: dict) -> None:
-        """Store the state of the integrator: arrays and numbers by name, the same ones each time.
+        """Store the state of the run: arrays and numbers by name, the same ones each time.
 
         Raises ValueError where names, shapes or types change, FileError where the disk is full.
         """
-        with self._writing():
+        with self.writing():
             self._checkpoint.write(state)
 
     def update_runtime(self, runtime: dict) -> None:
         """Set attributes of ``/runtime``: numbers and short texts by name."""
-        with self._writing() as file:
+        with self.writing() as file:
             for name, value in runtime.items():
-                value = _short(value) if isinstance(value, str) else value
+                value = short(value) if isinstance(value, str) else value
                 file["runtime"].attrs.modify(name, value)
             file.flush()
+
+    def sync(self) -> None:
+        """Wait until all that was written is on the disk: then it outlives a power cut as well."""
+        with self.writing() as file:
+            file.flush()
+            os.fsync(file.id.get_vfd_handle())
 
     def finish(self, status: str, runtime: dict) -> None:
         """Set status and ``/runtime``, close the file, give back the lock. Once; then nothing."""
@@ -139,8 +148,9 @@ class TrajectoryWriter:
         try:
             if self._file is not None:
                 self.update_runtime(runtime)
-                with self._writing() as file:
-                    file.attrs.modify("status", _short(status))
+                with self.writing() as file:
+                    file.attrs.modify("status", short(status))
+                    self.sync()
                     trim(file)
                     file.close()
         finally:
@@ -157,10 +167,12 @@ class TrajectoryWriter:
         show_frame(file["VTKHDF"], index, self.times[index])
 
     @contextmanager
-    def _writing(self):
+    def writing(self):
+        """Yield the open file; an error in the block closes this writer, as a FileError."""
         if self._file is None:
             raise FileError(f"{self.path}: is closed, after an error in writing or at its end")
         try:
+            _refuse_if_gone(self._file)
             yield self._file
         except (OSError, RuntimeError) as error:
             abandoned.append(self._file)
@@ -168,6 +180,15 @@ class TrajectoryWriter:
             raise FileError(
                 f"{self.path}: writing failed: {error}; its first {self.committed} frames are safe"
             ) from error
+
+
+def _refuse_if_gone(file):
+    """Raise OSError if the file was removed, replaced or cut short by someone else."""
+    found = os.fstat(file.id.get_vfd_handle())
+    if found.st_nlink == 0:
+        raise OSError("it was removed or replaced while the run was writing it")
+    if found.st_size < file.id.get_filesize():
+        raise OSError("it was cut short while the run was writing it")
 
 
 def _row(series, given, point_axis):
@@ -182,6 +203,6 @@ def _row(series, given, point_axis):
     return row
 
 
-def _short(text):
+def short(text: str):
     """Return a text cut to the fixed length of those that are changed in place."""
     return np.bytes_(text.encode()[: layout.TEXT_BYTES])

@@ -16,13 +16,16 @@ __all__ = ["Rods", "Scene", "State", "StrainTwist", "build_scene"]
 PLANE_TOLERANCE = 1e-12  # of the rod's length, as the case file's contract has it
 
 
-def build_scene(case) -> Scene:
+def build_scene(case, stored=None) -> Scene:
     """Return the scene of a validated case.
+
+    ``stored``: called with a rod's name instead of reading its shape file, where it has one;
+    returns position, director, spacing, closed.
 
     Raises CaseError for what only the geometry can tell (spacings that differ, a planar scene
     that is not, triads a half-turn apart) and FileError for a shape file.
     """
-    built = [_build_rod(case, name, rod) for name, rod in case.rods.items()]
+    built = [_build_rod(case, name, rod, stored) for name, rod in case.rods.items()]
     rods = _tables(case, built)
     position = np.ascontiguousarray(np.concatenate([rod[0] for rod in built], axis=1))
     director = np.ascontiguousarray(np.concatenate([rod[1] for rod in built], axis=2))
@@ -51,10 +54,12 @@ def _folder(case):
     return Path(case.source.path).parent if case.source and case.source.path else Path()
 
 
-def _build_rod(case, name, rod):
+def _build_rod(case, name, rod, stored):
     """Return position, director, spacing, closed of one rod, placed."""
     shape = rod.shape
     if shape.kind == "file":
+        if stored is not None:
+            return stored(name)
         position, director, spacing, closed = read_shape(shape, _folder(case))
         _check_stored(case, name, rod, spacing, position.shape[1] - (not closed))
     else:

@@ -8,7 +8,7 @@ import uuid
 from contextlib import contextmanager
 from time import sleep
 
-from rodsim.errors import STOPPED_EARLY, DivergedError, UsageError
+from rodsim.errors import DivergedError, StoppedError, UsageError
 from rodsim.sweep.summary import last_line
 from rodsim.sweep.work import stop, work
 
@@ -115,7 +115,7 @@ class Sweep:
         if problem is not None:
             return self.ended(run, f"{type(problem).__name__}: {problem}".split("\n")[0])
         code = future.result()
-        cut_short = code == STOPPED_EARLY or code < 0  # negative: by a signal
+        cut_short = code == StoppedError.exit_code or code < 0  # negative: by a signal
         if cut_short and not self.stopping and self.attempts[run.name] < ATTEMPTS:
             return self._submit(run)
         if code in (0, DivergedError.exit_code) or cut_short:

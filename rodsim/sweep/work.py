@@ -9,7 +9,7 @@ import subprocess
 import sys
 from time import monotonic, sleep
 
-from rodsim.errors import STOPPED_EARLY, FileError
+from rodsim.errors import FileError, StoppedError
 from rodsim.sweep.plan import Run
 
 DONE = ("finished", "diverged")
@@ -55,7 +55,7 @@ def work(sweep: str, run: Run, threads: int | None) -> int:
     if stands in DONE:
         return 0
     if sweep in _stopped:
-        return STOPPED_EARLY
+        return StoppedError.exit_code
     return _execute(sweep, run, command(run, stands), threads)
 
 

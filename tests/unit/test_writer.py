@@ -152,16 +152,17 @@ def assert_state(found, number):
 
 
 def test_checkpoints_alternate_and_the_newest_whole_one_counts(tmp_path):
-    with create(tmp_path / "out.h5") as writer, open_trajectory(tmp_path / "out.h5") as run:
-        assert run.checkpoint() is None
-        for number in range(1, 6):
+    first = {"checkpoint": state(0)}
+    with create(tmp_path / "out.h5", **first) as writer, open_trajectory(writer.path) as run:
+        assert_state(run.checkpoint(), 0)
+        for number in range(1, 7):
             writer.checkpoint(state(number))
             with open_trajectory(tmp_path / "out.h5") as meanwhile:
                 assert_state(meanwhile.checkpoint(), number)
     with h5py.File(tmp_path / "out.h5", "r+") as file:
         file["checkpoint/a/X"][1, 2] += 1e-12
     with open_trajectory(tmp_path / "out.h5") as run:
-        assert_state(run.checkpoint(), 4)
+        assert_state(run.checkpoint(), 5)
     with h5py.File(tmp_path / "out.h5", "r+") as file:
         file["checkpoint/b/seal"][1] += 1
     with open_trajectory(tmp_path / "out.h5") as run:
@@ -241,9 +242,10 @@ def test_hdf5_never_meets_a_full_disk(tmp_path):
 def test_what_is_reserved_is_enough(tmp_path, rods, frames):
     times = 0.3 * np.arange(frames)
     points = sum(rod.count for rod in rods)
-    with create(tmp_path / "out.h5", rods=rods, times=times) as writer:
+    first = {"X": np.zeros((3, points)), "D": np.zeros((30, points))}
+    with create(tmp_path / "out.h5", rods=rods, times=times, checkpoint=first) as writer:
         reserved = (tmp_path / "out.h5").stat().st_size
-        writer.checkpoint({"X": np.zeros((3, points)), "D": np.zeros((9, points))})
+        writer.checkpoint(first)
         assert (tmp_path / "out.h5").stat().st_size == reserved
     assert (tmp_path / "out.h5").stat().st_size < reserved
 

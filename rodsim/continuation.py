@@ -1,0 +1,169 @@
+"""A run that has ended, read from its file to go on: its case, its last snapshot, its writer."""
+
+from __future__ import annotations
+
+import json
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+
+import rodsim
+from rodsim.case import Case, case_from_mapping
+from rodsim.case.words import shown
+from rodsim.errors import CaseError, FileError, Problem
+from rodsim.output import CaseText, Trajectory, open_trajectory
+from rodsim.output.again import extend, note_resume, reopen
+from rodsim.output.paths import OutputLock
+from rodsim.recorder import frame_times, plan_output
+from rodsim.rods.state import State
+
+ALLOWED = (
+    "a run that goes on can have a later time.end and more output.fields, nothing else; "
+    "for another case use rodsim run"
+)
+
+
+@contextmanager
+def open_past(path, overrides=()):
+    """Lock an output and yield its :class:`Past`; the lock goes on to its writer."""
+    path = Path(path)
+    if not path.is_file():
+        raise FileError(f"{path}: no such file")
+    lock = OutputLock(path)
+    lock.acquire()
+    try:
+        with open_trajectory(path) as run:
+            yield _read(path, run, tuple(overrides), lock)
+    finally:
+        lock.release()  # does nothing where the writer has given it back
+
+
+@dataclass
+class Past:
+    """What an output says about its run. ``case`` has the changes that were asked for."""
+
+    path: Path
+    run: Trajectory
+    lock: OutputLock
+    case: Case
+    overrides: tuple[str, ...]
+    snapshot: dict
+    changed: bool
+
+    @property
+    def complete(self) -> bool:
+        """Whether nothing is left to do."""
+        run = self.run
+        return not self.changed and run.status == "finished" and run.frames == len(run.planned)
+
+    def warnings(self):
+        """Yield what may keep the result from being that of an uninterrupted run, bit for bit."""
+        if self.run.version != rodsim.__version__:
+            yield (
+                f"{self.path} was written by rodsim {self.run.version}, this is "
+                f"{rodsim.__version__}: last digits can differ from those of one run"
+            )
+
+    def shape(self, name: str):
+        """Return position, director, spacing, closed of a rod that began as a shape file."""
+        record = {rod.name: rod for rod in self.run.rods}[name]
+        nodes = slice(record.first, record.first + record.count)
+        position = np.array(self.snapshot["position"][:, nodes])
+        director = np.array(self.snapshot["director"][:, :, nodes])
+        return position, director, record.spacing, record.closed
+
+    def writer(self, machine):
+        """Return the writer that goes on with the file, or with a longer copy in its place."""
+        run, scene = self.run, machine.system.scene
+        text = CaseText(
+            run.case_source,
+            json.dumps(self.case.resolved(), indent=1),
+            [*run.overrides, *self.overrides],
+        )
+        plan = plan_output(self.case, scene, self.snapshot)
+        plan = replace(plan, case=text, times=self._times())
+        if plan.rods != run.rods:
+            raise FileError(f"{self.path}: damaged: its rods are not those of its case")
+        history = self._history()
+        if self.changed:
+            writer = extend(self.path, plan, self.lock, run, self._compute(machine.system))
+            run.close()
+        else:
+            run.close()  # HDF5 does not open a file for writing that it has open for reading
+            writer = reopen(self.path, plan, self.lock)
+        note_resume(writer, history)
+        return writer
+
+    def _times(self):
+        """Return the times of all frames: those that are there stay."""
+        run = self.run
+        if not self.changed:
+            return run.planned
+        times = frame_times(self.case.time.end, self.case.interval)
+        return np.append(run.time, times[times > run.time.max(initial=-1.0) * (1.0 + 1e-9)])
+
+    def _compute(self, system):
+        """Return the function that computes the fields of an earlier frame from its triads."""
+        run, no_tracers = self.run, np.zeros((3, 0))
+
+        def fields(index):
+            position, director = run.read("position", index).T, run.read("director", index)
+            director = director.transpose(1, 2, 0).copy()
+            return system.observe(State(run.time[index], position.copy(), director, no_tracers))[0]
+
+        return fields
+
+    def _history(self):
+        now = datetime.now(UTC).isoformat(timespec="seconds")
+        changes = "".join(f" --set {text}" for text in self.overrides)
+        at = f"from t = {self.snapshot['time']:.6g}, {self.run.frames} frames"
+        return f"{now} {at}, was {self.run.status}; rodsim {rodsim.__version__}{changes}"
+
+
+def _read(path, run, overrides, lock):
+    snapshot = run.checkpoint()
+    if snapshot is None or not {"time", "position", "director", "force"} <= snapshot.keys():
+        raise FileError(f"{path}: damaged: neither of its checkpoints is whole")
+    try:
+        resolved = json.loads(run.case_resolved)
+        before = case_from_mapping(resolved, path=f"{path}: case")
+    except (ValueError, RecursionError, TypeError, CaseError) as error:
+        raise FileError(f"{path}: damaged: its case cannot be read ({error})") from error
+    case = case_from_mapping(resolved, overrides, path=f"{path}: case")
+    problems = [*_forbidden(path, before.resolved(), case.resolved()), *_not_computable(run, case)]
+    if problems:
+        raise CaseError(problems)
+    changed = case.resolved() != before.resolved()
+    return Past(path, run, lock, case, overrides, snapshot, changed)
+
+
+def _forbidden(path, before, after):
+    """Yield a problem for each difference that a run which goes on cannot have."""
+    for key in sorted(_leaves(before).keys() | _leaves(after).keys()):
+        old, new = _leaves(before).get(key), _leaves(after).get(key)
+        later = key == "time.end" and new >= old
+        added = key == "output.fields" and set(new) >= set(old)
+        if old != new and not later and not added:
+            reason = f"is {shown(old) or 'not there'} in {path}: {ALLOWED}"
+            yield Problem("--set", key, shown(new), reason)
+
+
+def _leaves(node, path=""):
+    """Return the values of nested mappings by dotted path; lists are values."""
+    if not isinstance(node, dict):
+        return {path: node}
+    found = {}
+    for key, item in node.items():
+        found |= _leaves(item, f"{path}.{key}" if path else key)
+    return found
+
+
+def _not_computable(run, case):
+    added = set(case.output.fields) - set(run.fields)
+    if added and "director" not in run.fields and run.frames:
+        what = ", ".join(sorted(added))
+        reason = f"the frames of {run.path} have no director, so {what} cannot be computed for them"
+        yield Problem("--set", "output.fields", shown(list(case.output.fields)), reason)
