@@ -20,6 +20,7 @@ except ImportError as error:
 
 ATTEMPTS = 5  # how often a run that was stopped by someone else is resumed
 POLL_SECONDS = 0.2
+CONNECT_SECONDS = 15
 
 
 def share(runs: int, jobs: int | None, threads: int | None) -> tuple[int, int]:
@@ -65,7 +66,7 @@ def local_cluster(jobs: int, threads: int):
 def remote_cluster(address: str):
     """Connect to a scheduler that is there already; yield the client."""
     try:
-        client = distributed.Client(address, timeout="10s")
+        client = distributed.Client(address, timeout=CONNECT_SECONDS)
     except (OSError, TimeoutError, ValueError) as error:
         raise UsageError(f"--scheduler {address}: cannot be reached: {error}") from error
     with client:
