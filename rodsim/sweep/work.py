@@ -71,7 +71,9 @@ def stop(sweep: str) -> None:
 
 
 def _execute(sweep, run, line, threads):
-    environment = dict(os.environ) | ({"NUMBA_NUM_THREADS": str(threads)} if threads else {})
+    environment = {"NUMBA_NUM_THREADS": "1", **os.environ}  # a thread of Dask stands for a core
+    if threads:
+        environment["NUMBA_NUM_THREADS"] = str(threads)
     with run.log.open("a", encoding="utf-8") as log:
         log.write(f"$ {shlex.join(line)}\n")
         log.flush()

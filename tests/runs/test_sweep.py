@@ -335,23 +335,26 @@ def test_ctrl_c_stops_the_runs_and_the_same_command_goes_on(here):
 def test_swimming_speed_over_amplitude_and_frequency(here):
     """Fig. 6: 24 cases on two workers, one of them killed.
 
-    The speed of the infinite regularised filament is V = 0.340 k sigma b^2/2 (small amplitude,
-    eps = 0.4667 um); a rod of 8 wavelengths has 0.28-0.30 of it. At b = 1.5 um, where the tangent
-    turns by 1.9 rad, the ratio is far smaller.
+    The infinite regularised filament swims at V = 0.340 k sigma b^2/2 while b is small (eps =
+    0.4667 um); finite rods approach that from below, one of 8 wavelengths has at least 0.28. The rod
+    follows its preferred shape at once, so V is in proportion to sigma at any b: 2 % are the lag of
+    a bending rate of 1e4 1/s behind 250-550 rad/s.
     """
-    arguments = (CONFIGS / "flagellum.yaml", "--table", SWIMMING,
+    arguments = (CONFIGS / "flagellum.yaml", "--table", SWIMMING, "--set", "output.interval=null",
                  "--period", "2*pi/sigma")  # fmt: skip
     with real_cluster(here) as (address, workers):
         _, code = start_and_kill_one(arguments, address, workers)
     assert code == 0
     table = rows()
     assert [row["status"] for row in table] == ["finished"] * 24
+    factors = {}
     for row in table:
         b, sigma = float(row["parameters.b"]), float(row["parameters.sigma"])
         factor = float(row["velocity_z (um s^-1)"]) / (0.5 * K * sigma * b**2)
-        if b <= 0.25:
-            assert 0.28 <= factor <= 0.30
-        assert 0.0 < factor < 0.30
+        factors.setdefault(b, []).append(factor)
+    assert all(0.28 < factor < 0.34 for factor in factors[0.075])
+    for values in factors.values():
+        assert values == pytest.approx([values[0]] * 4, rel=0.03)
 
 
 def test_old_results_survive_a_changed_case(here):
