@@ -336,9 +336,9 @@ def test_swimming_speed_over_amplitude_and_frequency(here):
     """Fig. 6: 24 cases on two workers, one of them killed.
 
     The infinite regularised filament swims at V = 0.340 k sigma b^2/2 while b is small (eps =
-    0.4667 um); finite rods approach that from below, one of 8 wavelengths has at least 0.28. The rod
-    follows its preferred shape at once, so V is in proportion to sigma at any b: 2 % are the lag of
-    a bending rate of 1e4 1/s behind 250-550 rad/s.
+    0.4667 um); finite rods approach that from below, one of 8 wavelengths has at least 0.28. The
+    rod follows its preferred shape at once, so V is in proportion to sigma at any b: 2 % are the
+    lag of a bending rate of 1e4 1/s behind 250-550 rad/s.
     """
     arguments = (CONFIGS / "flagellum.yaml", "--table", SWIMMING, "--set", "output.interval=null",
                  "--period", "2*pi/sigma")  # fmt: skip
