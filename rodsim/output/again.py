@@ -10,7 +10,7 @@ from rodsim.output import layout
 from rodsim.output.guarded import GuardedFile
 from rodsim.output.layout import CLOCK, Plan
 from rodsim.output.reader import Trajectory
-from rodsim.output.vtkhdf import show_frames
+from rodsim.output.vtkhdf import View
 from rodsim.output.writer import TrajectoryWriter, short
 
 BLOCK = 2**24  # bytes copied at a time
@@ -25,7 +25,7 @@ def reopen(path, plan: Plan, lock) -> TrajectoryWriter:
         raise FileError(f"{path}: cannot be written: {error}") from error
     writer = TrajectoryWriter(path, file, plan, lock)
     with writer.writing():
-        show_frames(file["VTKHDF"], plan.times[: writer.committed])
+        View(file["VTKHDF"]).show_all(plan.times[: writer.committed])
         file.attrs.modify("status", short("running"))
         file.flush()
     return writer
@@ -75,7 +75,7 @@ def _copy_frames(writer, plan, run, compute):
         file[f"{CLOCK}/time"][: run.frames] = run.time
         file[f"{CLOCK}/step"][: run.frames] = run.steps
         file["committed"][()] = writer.committed = run.frames
-        show_frames(file["VTKHDF"], run.time)
+        View(file["VTKHDF"]).show_all(run.time)
 
 
 def _check_layout(path, plan):

@@ -54,10 +54,15 @@ def build_file(path: Path, plan: Plan) -> h5py.File:
     return file
 
 
+def descriptor(file: h5py.File) -> int:
+    """Return the system's number of the open file."""
+    return file.id.get_vfd_handle()
+
+
 def trim(file: h5py.File) -> None:
     """Give back what was reserved and is not used."""
     file.flush()
-    os.ftruncate(file.id.get_vfd_handle(), file.id.get_filesize())
+    os.ftruncate(descriptor(file), file.id.get_filesize())
 
 
 def _room(plan):
@@ -81,7 +86,7 @@ def _reserve(file, count):
     if not hasattr(os, "posix_fallocate"):
         return
     try:
-        os.posix_fallocate(file.id.get_vfd_handle(), 0, count)
+        os.posix_fallocate(descriptor(file), 0, count)
     except OSError as error:
         if error.errno not in (errno.EINVAL, errno.EOPNOTSUPP, errno.ENOSYS):
             raise

@@ -13,6 +13,7 @@ import numpy as np
 
 from rodsim.errors import FileError
 from rodsim.output.guarded import GuardedFile
+from rodsim.output.rows import Rows
 
 SLOTS = ("a", "b")
 SEAL = "seal"
@@ -33,29 +34,30 @@ def allocate(group: h5py.Group, state: dict) -> None:
 class CheckpointWriter:
     """Writes states of one shape in turn to the two slots of ``/checkpoint``.
 
-    Datasets stay open and are written through HDF5's own calls: there is one at every frame.
+    ``group`` : what :func:`allocate` has filled, or an earlier run.
     """
 
     def __init__(self, group: h5py.Group):
         self._file = group.file
-        self._slots = [{name: slot[name] for name in slot} for slot in _slots(group)]
-        self._serial = max((int(slot[SEAL][0]) for slot in self._slots), default=0)
-        whole = [_whole_serial(slot) for slot in self._slots]
-        self._turn = whole.index(min(whole)) if whole else 0  # never over the newest whole one
+        slots = [group[name] for name in SLOTS]
+        self._slots = [{name: Rows(slot[name]) for name in slot} for slot in slots]
+        self._serial = max(int(slot[SEAL][0]) for slot in slots)
+        whole = [_whole_serial(slot) for slot in slots]
+        self._turn = whole.index(min(whole))  # never over the newest whole one
 
     def write(self, state: dict) -> None:
         """Store arrays and numbers by name; raises ValueError where names or shapes change."""
-        arrays, slot = _arrays(state), self._slots[self._turn] if self._slots else {SEAL: None}
+        arrays, slot = _arrays(state), self._slots[self._turn]
         if slot.keys() != {*arrays, SEAL}:
             raise ValueError(f"checkpoint has {sorted(arrays)}, its file {sorted(slot)}")
         for name, array in arrays.items():
             if (slot[name].shape, slot[name].dtype) != (array.shape, array.dtype):
                 raise ValueError(f"checkpoint: {name} changed its shape or type")
         for name, array in arrays.items():
-            _put(slot[name], array)
+            slot[name].put_all(array)
         self._file.flush()
         self._serial += 1
-        _put(slot[SEAL], np.array([self._serial, checksum(self._serial, arrays)], dtype=np.int64))
+        slot[SEAL].put_all([self._serial, checksum(self._serial, arrays)])
         self._file.flush()
         self._turn = 1 - self._turn
 
@@ -94,15 +96,7 @@ def _whole_serial(slot):
     return serial if checksum(serial, _arrays(arrays)) == crc else 0
 
 
-def _slots(group):
-    return [group[name] for name in SLOTS if name in group]
-
-
 def _arrays(state):
     """Return the entries as contiguous arrays, by name."""
     # ascontiguousarray alone would turn single numbers into lists of one
     return {name: np.asarray(value, order="C") for name, value in sorted(state.items())}
-
-
-def _put(dataset, array):
-    dataset.id.write(h5py.h5s.ALL, h5py.h5s.ALL, array)

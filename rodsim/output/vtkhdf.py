@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 
 from rodsim.output.layout import TRAJECTORY, Plan
+from rodsim.output.rows import Counter
 
 VERSION = (2, 0)
 CELLS = ("Vertices", "Lines", "Polygons", "Strips")  # VTK insists on all four
@@ -38,32 +39,34 @@ def build_view(file: h5py.File, plan: Plan) -> None:
     _add_steps(root.create_group("Steps"), len(plan.times), plan.points, data)
 
 
-def show_frame(view: h5py.Group, index: int, time: float) -> None:
-    """Make frame ``index``, which is on the disk, the last one visible, or correct its time."""
-    steps, values = view["Steps"], view["Steps/Values"]
-    if index >= len(values):
-        values.resize((index + 1,))
-    values[index] = time
-    steps.file.flush()
+class View:
+    """Makes the frames of an open ``/VTKHDF`` visible, one by one."""
 
+    def __init__(self, group: h5py.Group):
+        self._file, self._values = group.file, group["Steps/Values"]
+        self._shown, self._steps = len(self._values), Counter(group["Steps"], "NSteps")
 
-def count_frames(view: h5py.Group, frames: int) -> None:
-    """Set the number of visible frames; to be on the disk before ``show_frame`` of the last one."""
-    view["Steps"].attrs.modify("NSteps", np.int64(frames))
+    def count(self, frames: int) -> None:
+        """Set the number of frames; to be on the disk before the last one is shown."""
+        self._steps.put(frames)
 
+    def show(self, index: int, time: float) -> None:
+        """Show frame ``index``, which is on the disk, or correct its time."""
+        if index >= self._shown:
+            self._shown = index + 1
+            self._values.resize((self._shown,))
+        self._values[index] = time
+        self._file.flush()
 
-def show_frames(view: h5py.Group, times: np.ndarray) -> None:
-    """Make exactly these frames visible, wherever a kill has left the view."""
-    values = view["Steps/Values"]
-    if len(times) == 0:
-        return
-    if len(values) > len(times):
-        values.resize((len(times),))
-    count_frames(view, len(times))
-    view.file.flush()
-    values.resize((len(times),))
-    values[:] = times
-    view.file.flush()
+    def show_all(self, times: np.ndarray) -> None:
+        """Show exactly these frames, wherever a kill has left the view."""
+        self._shown = max(1, len(times))
+        self._values.resize((min(self._shown, len(self._values)),))
+        self.count(len(times))
+        self._file.flush()
+        self._values.resize((self._shown,))
+        self._values[:] = times if len(times) else 0.0
+        self._file.flush()
 
 
 def _add_view(group, name, value, pick):

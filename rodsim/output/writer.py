@@ -10,12 +10,13 @@ import h5py
 import numpy as np
 
 from rodsim.errors import FileError
-from rodsim.output import layout
+from rodsim.output import build, layout
 from rodsim.output.build import abandoned, build_file, trim
 from rodsim.output.checkpoint import CheckpointWriter
 from rodsim.output.layout import CLOCK, Plan
 from rodsim.output.paths import OutputLock, take_place, temporary_name
-from rodsim.output.vtkhdf import count_frames, show_frame
+from rodsim.output.rows import Rows
+from rodsim.output.vtkhdf import View
 
 
 class TrajectoryWriter:
@@ -34,7 +35,9 @@ class TrajectoryWriter:
         self.path, self.times, self.renamed_to = path, plan.times, None
         self.committed = int(file["committed"][()])
         self._file, self._plan, self._lock = file, plan, lock
-        self._values = {s.where: file[f"{s.where}/value"] for s in plan.stored()}
+        self._values = {s.where: Rows(file[f"{s.where}/value"]) for s in plan.stored()}
+        self._time, self._step = Rows(file[f"{CLOCK}/time"]), Rows(file[f"{CLOCK}/step"])
+        self._counter, self._view = Rows(file["committed"]), View(file["VTKHDF"])
         self._checkpoint = CheckpointWriter(file["checkpoint"])
 
     @classmethod
@@ -113,9 +116,9 @@ class TrajectoryWriter:
         rows |= {s.where: _row(s, observables, 0) for s in self._plan.observables_stored()}
         with self.writing() as file:
             for where, row in rows.items():
-                self._values[where][index] = row
-            file[f"{CLOCK}/time"][index] = self.times[index]
-            file[f"{CLOCK}/step"][index] = step
+                self._values[where].put(index, row)
+            self._time.put(index, self.times[index])
+            self._step.put(index, step)
             file.flush()
             self._commit(file, index)
 
@@ -139,7 +142,7 @@ class TrajectoryWriter:
         """Wait until all that was written is on the disk: then it outlives a power cut as well."""
         with self.writing() as file:
             file.flush()
-            os.fsync(file.id.get_vfd_handle())
+            os.fsync(build.descriptor(file))
 
     def finish(self, status: str, runtime: dict) -> None:
         """Set status and ``/runtime``, close the file, give back the lock. Once; then nothing."""
@@ -160,11 +163,11 @@ class TrajectoryWriter:
     def _commit(self, file, index):
         """Let the frame count; its data are written. Each flush keeps the order on the disk."""
         committed = max(self.committed, index + 1)
-        file["committed"][()] = committed
-        count_frames(file["VTKHDF"], committed)
+        self._counter.put_all(committed)
+        self._view.count(committed)
         file.flush()
         self.committed = committed
-        show_frame(file["VTKHDF"], index, self.times[index])
+        self._view.show(index, self.times[index])
 
     @contextmanager
     def writing(self):
@@ -184,7 +187,7 @@ class TrajectoryWriter:
 
 def _refuse_if_gone(file):
     """Raise OSError if the file was removed, replaced or cut short by someone else."""
-    found = os.fstat(file.id.get_vfd_handle())
+    found = os.fstat(build.descriptor(file))
     if found.st_nlink == 0:
         raise OSError("it was removed or replaced while the run was writing it")
     if found.st_size < file.id.get_filesize():
