@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from rodsim.commands.common import case_argument, prepare_numba, set_option, threads_option
+from rodsim.commands.common import case_argument, prepare_numba, set_option
 
 _FILE, _FOLDER = (click.Path(path_type=Path, dir_okay=d, file_okay=not d) for d in (False, True))
 
@@ -22,7 +22,8 @@ _FILE, _FOLDER = (click.Path(path_type=Path, dir_okay=d, file_okay=not d) for d 
               help="Folder for the runs and summary.csv.")
 @click.option("-j", "--jobs", type=click.IntRange(1, 1024), metavar="N",
               help="Runs at once on this machine; by default as many as fill it.")
-@threads_option
+@click.option("--threads", type=click.IntRange(1, 1024), metavar="N",
+              help="Threads of each run; by default what is left when -j runs share the machine.")
 @click.option("--scheduler", metavar="ADDRESS",
               help="Use the workers of a running Dask scheduler, e.g. tcp://node:8786.")
 @click.option("--list", "only_list", is_flag=True,
@@ -60,6 +61,8 @@ def sweep(case_path, overrides, table, folder, jobs, threads, scheduler, only_li
     try:
         if left:
             _run(left, summary, table_path, (jobs, threads, scheduler, quiet))
+    except KeyboardInterrupt:
+        pass  # the table says what is left, the exit code too
     finally:
         folder.mkdir(parents=True, exist_ok=True)
         summary.write(table_path)
@@ -87,7 +90,7 @@ def _run(left, summary, table_path, options):
             display.ended(summary.update(run, failure))
             summary.write(table_path)
 
-        engine.Sweep(client, threads, ended).finish(left, display.look)
+        engine.Sweep(client, threads, ended).finish(left, display)
 
 
 def _compile(left, quiet):

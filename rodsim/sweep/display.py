@@ -41,6 +41,11 @@ class Lines:
             parts.append(row["message"])
         click.echo(", ".join(parts), err=True)
 
+    def say(self, text) -> None:
+        """Tell the user something."""
+        if not self.quiet:
+            click.echo(text, err=True)
+
     def look(self) -> None:
         """Be called now and then."""
 
@@ -68,6 +73,10 @@ class Table(Lines):
     def __exit__(self, *error):
         self._redraw()
         self.live.__exit__(*error)
+
+    def say(self, text):
+        """Print a line above the table."""
+        self.console.print(text)
 
     def look(self):
         """Redraw, once a second."""

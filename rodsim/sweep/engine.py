@@ -84,15 +84,16 @@ class Sweep:
         self.token = uuid.uuid4().hex
         self.pending, self.attempts, self.stopping = {}, {}, False
 
-    def finish(self, runs, look) -> None:
-        """Do all runs; ``look`` is called now and then. Ctrl-C stops them, ready to be resumed."""
+    def finish(self, runs, display) -> None:
+        """Do all runs. Ctrl-C stops them, ready to be resumed; a second one does not wait."""
         for run in runs:
             self._submit(run)
         try:
-            self._wait(look)
+            self._wait(display)
         except KeyboardInterrupt:
             self.stopping = True
-            self._wait(look)
+            display.say("stopping the runs, they can be resumed; Ctrl-C again leaves at once")
+            self._wait(display)
             raise
 
     def _submit(self, run):
@@ -101,13 +102,13 @@ class Sweep:
         future = self.client.submit(work, self.token, run, self.threads, key=key, pure=False)
         self.pending[future] = run
 
-    def _wait(self, look):
+    def _wait(self, display):
         while self.pending:
             if self.stopping:  # again and again: a worker may have been started since
                 self.client.run(stop, self.token, on_error="ignore")
             for future in [future for future in self.pending if future.done()]:
                 self._end(self.pending.pop(future), future)
-            look()
+            display.look()
             sleep(POLL_SECONDS)
 
     def _end(self, run, future):
