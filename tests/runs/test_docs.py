@@ -13,7 +13,7 @@ from scenes import ROOT
 from rodsim.cli import COMMANDS
 
 PAGES = sorted((ROOT / "docs").glob("*.md"))
-SLOW = ("choosing", "sweeps")  # minutes where the machine is not quiet
+SLOW = ("choosing", "sweeps")  # minutes where the machine is not quiet; and below, the tutorial
 LATER = {"plot", "flow", "export", "converge"} - set(COMMANDS)  # written by others at this time
 BLOCK = re.compile(r"(?:<!-- (?P<mark>[\w: ]+) -->\n)?```(?P<kind>\w+)\n(?P<text>.*?)```", re.S)
 LINK = re.compile(r"\]\((?!https?:)([^)]+)\)")
@@ -33,7 +33,7 @@ def blocks(page, install=False):
 CODE = [
     pytest.param(page, marks=[pytest.mark.long] * (page.stem in SLOW))
     for page in PAGES
-    if blocks(page)
+    if blocks(page) and page.stem != "tutorial"
 ]
 
 

@@ -154,6 +154,10 @@ def test_only_the_same_case_counts(here):
     other = one(["time.tolerance=1e-5"])
     assert other.folder == run.folder
     assert standing(other) == "waiting"
+    assert work("token", other, None) == 0  # what was there is renamed, not lost
+    assert standing(other) == "finished"
+    shutil.move(other.folder / "out.1.h5", run.output)
+    assert standing(run) == "finished"
     run.output.write_text("not an output")
     assert standing(run) == "waiting"
 
@@ -294,11 +298,11 @@ def start_and_kill_one(arguments, address, workers):
 @pytest.mark.compiled
 def test_a_killed_worker_loses_nothing(here):
     """Its run is resumed by the other worker, to the same bits as a run that nobody disturbed."""
-    slow = ("--set", "rods.ring.shape.points=[60, 64, 68]", "--set", "time.tolerance=1e-10")
+    slow = ("--set", "rods.ring.shape.points=[60, 64]", "--set", "time.tolerance=1e-9")
     with real_cluster(here) as (address, workers):
         killed, code = start_and_kill_one((RING, *slow), address, workers)
     assert code == 0
-    assert [row["status"] for row in rows()] == ["finished"] * 3
+    assert [row["status"] for row in rows()] == ["finished"] * 2
     folder = (here / killed).parent
     assert "rodsim resume" in (folder / "run.log").read_text()
     undisturbed = call("run", folder / "case.yaml", "-o", "alone.h5", "-q")
@@ -355,17 +359,6 @@ def test_swimming_speed_over_amplitude_and_frequency(here):
     assert all(0.28 < factor < 0.34 for factor in factors[0.075])
     for values in factors.values():
         assert values == pytest.approx([values[0]] * 4, rel=0.03)
-
-
-def test_old_results_survive_a_changed_case(here):
-    """The output of another case in the same folder is renamed, not lost."""
-    run = one()
-    work("token", run, None)
-    other = one(["time.tolerance=1e-5"])
-    assert work("token", other, None) == 0
-    assert standing(other) == "finished"
-    shutil.move(other.folder / "out.1.h5", other.output)
-    assert standing(run) == "finished"
 
 
 def test_series_name_lines_by_what_does_not_follow_from_x(here):
