@@ -12,8 +12,13 @@ wrap-around of negative indices to each access, and LLVM then gives up vectorisi
 
 from functools import partial
 
+import numba
 import numpy as np
 from numba import njit
+
+# A function from the cache can hold parallel code without Numba knowing it: the threading layer
+# must be there before it is loaded, or LLVM ends the process: "Symbol not found: allocate_sched".
+numba.get_num_threads()
 
 VEC = "float64[::1]"
 MAT = "float64[:, ::1]"

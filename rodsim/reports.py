@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rodsim.errors import FileError
 from rodsim.recorder import frame_times
 from rodsim.rods import build_scene
 
@@ -62,6 +63,29 @@ def run_summary(summary, output) -> str:
     return "\n".join(lines)
 
 
+def check_output(path) -> str:
+    """Read a whole output file and say that it is good; FileError with all that is not."""
+    from rodsim.output import open_trajectory
+    from rodsim.output.verify import verify
+
+    with open_trajectory(path) as run:
+        problems = verify(run)
+        if problems:
+            raise FileError("\n".join(f"{path}: damaged: {problem}" for problem in problems))
+        return f"{path}: checked, {run.frames} frames are whole, and so is the checkpoint"
+
+
+def _fate(run) -> str:
+    """Return how a run has ended, and what to do if it has not come to its end."""
+    from rodsim.output.paths import writing_process
+
+    again = f"; go on with: rodsim resume {run.path}"
+    if run.status == "running":
+        writer = writing_process(run.path)
+        return f"running, {writer}" if writer else f"killed{again}"
+    return run.status + (again if run.status == "stopped" else "")
+
+
 def describe_output(path) -> str:
     """Return what an output file holds and how its run ended."""
     from rodsim.output import open_trajectory
@@ -70,7 +94,8 @@ def describe_output(path) -> str:
         unit = run.units
         last = f"t = 0 to {run.time[-1]:g} {unit['time']}" if run.frames else "no time"
         lines = [
-            f"{path}: {run.status}, {run.frames} frames, {last}",
+            f"{path}: {_fate(run)}",
+            f"{run.frames} of {len(run.planned)} frames, {last}",
             f"written by rodsim {run.version}, {run.created}; format {run.format}",
         ]
         for rod in run.rods:
@@ -82,6 +107,7 @@ def describe_output(path) -> str:
             f"{key}: {value if isinstance(value, str) else format(value, '.6g')}"
             for key, value in run.runtime.items()
         ]
+        lines += [f"resumed {text}" for text in run.resumes]
         if run.overrides:
             lines.append("--set " + " --set ".join(run.overrides))
     return "\n".join(lines)

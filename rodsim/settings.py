@@ -41,7 +41,7 @@ def _let_llvm_vectorise():
 def cache_folder() -> Path:
     """Return the folder for compiled code of exactly this installation on this processor."""
     home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(home) / "rodsim" / _fingerprint()
+    return Path(home) / "rodsim" / fingerprint()
 
 
 def _writable(folder):
@@ -66,8 +66,9 @@ def _load_tbb():
     return False
 
 
-def _fingerprint():
-    digest = hashlib.sha256(rodsim.__version__.encode())
+def fingerprint() -> str:
+    """Return a name for this installation: its place (Numba's cache has it), source, processor."""
+    digest = hashlib.sha256(f"{rodsim.__version__} {rodsim.__file__}".encode())
     for source in sorted(Path(rodsim.__file__).parent.rglob("*.py")):
         digest.update(source.read_bytes())
     digest.update(f"{sys.version} {platform.machine()} {_processor()}".encode())

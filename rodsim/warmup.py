@@ -20,7 +20,11 @@ def ensure_compiled(case, say) -> float:
     if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
         return 0.0
     variant = (case.fluid.blob, str(int(case.plane is not None)), str(int(bool(case.tracers))))
-    marker = Path(os.environ["NUMBA_CACHE_DIR"]) / f"compiled-{'-'.join(variant)}"
+    from rodsim.settings import fingerprint
+
+    # A folder that the user has set can be shared by several versions and installations.
+    name = "-".join(("compiled", fingerprint(), *variant))
+    marker = Path(os.environ["NUMBA_CACHE_DIR"]) / name
     if marker.exists():
         return 0.0
     say("compiling for this kind of scene, once; some seconds")

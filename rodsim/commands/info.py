@@ -10,12 +10,15 @@ from rodsim.commands.common import is_output, load, prepare_numba, say_warnings,
 @click.command()
 @click.argument("path", metavar="CASE.yaml|OUT.h5", type=click.Path(path_type=Path))
 @set_option
-def info(path, overrides):
+@click.option("--check", is_flag=True, help="Read the whole output and say if all of it is good.")
+def info(path, overrides, check):
     """Describe a case (points, fastest rate, stable steps) or an output file."""
     from rodsim import reports
 
     if is_output(path):
         click.echo(reports.describe_output(path))
+        if check:
+            click.echo(reports.check_output(path))
         return
     case = load(path, overrides)
     say_warnings(case)

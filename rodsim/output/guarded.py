@@ -51,9 +51,13 @@ class GuardedFile:
     def names(self, group: str) -> list[str]:
         """Return the names in a group, none if there is no such group."""
         try:
-            return list(self._node(group, h5py.Group))
+            node = self._node(group, h5py.Group)
         except FileError:
             return []
+        try:
+            return list(node)
+        except (OSError, RuntimeError, ValueError) as error:
+            raise self.damaged(f"{group} cannot be listed ({error})") from error
 
     def attribute(self, name: str, key: str, kind: type, shape=()):
         """Return an attribute: ``kind`` is str, bool, int or float; an array if it has a shape."""
@@ -68,7 +72,11 @@ class GuardedFile:
     def attributes(self, name: str) -> dict:
         """Return those attributes of a group that are single numbers or texts."""
         node = self._node(name)
-        found = {key: self._attribute(node, key) for key in node.attrs}
+        try:
+            keys = list(node.attrs)
+        except (OSError, RuntimeError, ValueError) as error:
+            raise self.damaged(f"{name} has no proper attributes ({error})") from error
+        found = {key: self._attribute(node, key) for key in keys}
         return {
             key: value if isinstance(value, str) else value.item()
             for key, value in found.items()

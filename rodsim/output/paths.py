@@ -111,20 +111,44 @@ class OutputLock:
 
     def _refuse_if_alive(self, found):
         try:
-            owner = json.loads(found)
-            host, pid, started = str(owner["host"]), int(owner["pid"]), owner["started"]
-        except (ValueError, KeyError, TypeError):
+            host, pid, started = _owner(found)
+        except ValueError:
             raise FileError(
                 f"{self.output}: its lock cannot be read; if no run writes it, remove {self.path}"
             ) from None
-        if host == socket.gethostname():
-            alive, since = _process(pid)
-            if not alive or (None not in (started, since) and started != since):
-                return
+        if not _is_alive(host, pid, started):
+            return
         raise FileError(
             f"{self.output}: is being written by process {pid} on {host}; "
             f"if that has ended, remove {self.path}"
         )
+
+
+def writing_process(output: Path) -> str:
+    """Return ``process N on HOST`` of who is writing an output, empty if nobody is."""
+    lock = OutputLock(Path(output))
+    try:
+        owner = _owner(lock.path.read_text())
+    except (OSError, ValueError):
+        return ""
+    return f"process {owner[1]} on {owner[0]}" if _is_alive(*owner) else ""
+
+
+def _owner(text):
+    """Return host, number and start of the process that has written a lock; or ValueError."""
+    try:
+        owner = json.loads(text)
+        return str(owner["host"]), int(owner["pid"]), owner["started"]
+    except (KeyError, TypeError, RecursionError) as error:
+        raise ValueError("not a lock") from error
+
+
+def _is_alive(host, pid, started):
+    """Tell whether a process runs; of one on another host nothing is known: it may."""
+    if host != socket.gethostname():
+        return True
+    alive, since = _process(pid)
+    return alive and (None in (started, since) or started == since)
 
 
 def _process(pid):

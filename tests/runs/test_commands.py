@@ -206,7 +206,7 @@ def test_info_of_an_output(here):
     call("run", RING, *SHORT, "-q")
     result = call("info", "out.h5")
     assert result.exit_code == 0
-    assert "finished, 3 frames, t = 0 to 0.002 s" in result.stdout
+    assert "out.h5: finished\n3 of 3 frames, t = 0 to 0.002 s" in result.stdout
     assert "--set time.end=2e-3" in result.stdout
 
 

@@ -180,7 +180,7 @@ def test_every_frame_survives_a_crash_at_every_write(tmp_path, monkeypatch):
 def test_every_frame_survives_a_crash_at_every_write_of_a_longer_run(tmp_path, monkeypatch):
     points = replay(tmp_path, monkeypatch, 0.3 * np.arange(90), restart=70)
     print(f"{points} crash points")
-    assert points > 8000
+    assert points > 5000
 
 
 def test_the_replay_sees_a_frame_that_is_claimed_too_early(tmp_path, monkeypatch):

@@ -46,7 +46,7 @@ plane: yz
 time: {{end: 1.1e-2, tolerance: 1.0e-5}}
 output: {{interval: 7.0e-4, fields: [position]}}
 """
-FIXED = ("output.interval=4e-5", "time.end=4e-4", "time.step=4e-6")
+FIXED = ("output.interval=1e-5", "time.end=1e-4", "time.step=1e-6")
 SCENES = {
     "driven rkc": (DRIVEN, ()),
     "planar rkc": (PLANAR, ()),

@@ -1,0 +1,54 @@
+"""Does a file hold what it says? Every committed frame is read, and the checkpoint."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rodsim.output.layout import FIELDS
+from rodsim.output.reader import Trajectory
+
+BLOCK = 2**24  # bytes read at a time
+ORTHONORMAL = 1e-6  # of a triad; a run keeps them to rounding
+
+
+def verify(run: Trajectory) -> list[str]:
+    """Return what is wrong with the frames of an open file; raises FileError where it is torn.
+
+    Every number of every committed frame is finite, times are those planned, steps do not
+    decrease, triads are orthonormal, and a checkpoint is whole.
+    """
+    found = []
+    if not np.array_equal(run.time, run.planned[: run.frames]):
+        found.append("the times of its frames are not those planned")
+    if (np.diff(run.steps) < 0).any() or (run.steps < 0).any():
+        found.append("the numbers of its steps decrease")
+    for name, read, size in _series(run):
+        found += _bad_frames(run, name, read, size)
+    if run.checkpoint() is None:
+        found.append("neither of its checkpoints is whole: it cannot be resumed")
+    return found
+
+
+def _series(run):
+    sizes = dict.fromkeys(FIELDS, 24 * run.points) | {"director": 72 * run.points}
+    for name in run.fields:
+        size = sizes.get(name) or 8 * run.read(name, slice(0, 1)).size
+        yield name, run.read, size
+    for name in run.observables:
+        yield name, run.observable, 24 * len(run.rods)
+
+
+def _bad_frames(run, name, read, size):
+    """Yield the first frame of a series that cannot be right, if there is one."""
+    rows = max(1, BLOCK // max(1, size))
+    for first in range(0, run.frames, rows):
+        values = read(name, slice(first, min(first + rows, run.frames)))
+        good = np.isfinite(values).reshape(len(values), -1).all(axis=1)
+        if name == "director":
+            with np.errstate(all="ignore"):
+                product = values @ values.swapaxes(-1, -2) - np.eye(3)
+                worst = abs(product).reshape(len(values), -1).max(axis=1, initial=0.0)
+            good &= worst < ORTHONORMAL
+        if not good.all():
+            yield f"{name} in frame {first + int(good.argmin())} is damaged"
+            return
