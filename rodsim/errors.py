@@ -71,3 +71,16 @@ class StepFailure(RodsimError):
     def __init__(self, reason: str, state):
         super().__init__(reason)
         self.state = state
+
+
+class SweepError(RodsimError):
+    """Not every run of a sweep has finished. ``counts`` : how many have each status."""
+
+    def __init__(self, counts):
+        kinds = {"failed": FileError, "diverged": DivergedError}
+        worst = [kind for status, kind in kinds.items() if counts[status]] or [StoppedError]
+        self.exit_code = worst[0].exit_code
+        order = ("finished", *kinds, "stopped", "waiting")
+        text = ", ".join(f"{counts[status]} {status}" for status in order if counts[status])
+        on = "; the same command goes on" if counts["stopped"] + counts["waiting"] else ""
+        super().__init__(text + on)

@@ -103,7 +103,9 @@ UnitName = Annotated[str, Field(pattern=r"^[A-Za-zµμ]{1,12}$")]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0), AfterValidator(in_range)]
 NotNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0)]
-NotZero = Annotated[Number, AfterValidator(not_zero)]
+NotZero = Annotated[
+    Number, AfterValidator(not_zero), WithJsonSchema({"type": "number", "not": {"const": 0}})
+]
 Flag = Annotated[bool, Field(strict=True)]
 Integer = Annotated[int, Field(strict=True)]
 Count = Annotated[int, Field(strict=True, ge=1), AfterValidator(no_larger_than_memory)]

@@ -156,7 +156,7 @@ class Case(Model):
     rods: dict[Name, Rod] = Field(min_length=1, description="the rods, by name")
     plane: Literal["yz"] | None = Field(None, description="yz: everything stays in one such plane")
     tracers: dict[Name, TracerGroup] = quantity(
-        "length", "passive fluid markers: tubes around rods, or lists of points", default={}
+        "length", "passive fluid markers: tubes around rods, or lists of points x, y, z", default={}
     )
     time: Time = Field(description="time and integrator")
     output: Output = Field(Output(), description="frames")

@@ -15,7 +15,7 @@ def case_schema() -> dict[str, Any]:
 
 
 def _to_draft_07(node: Any) -> Any:
-    """Return pydantic's schema (2020-12) with the keywords of draft-07."""
+    """Return pydantic's schema (2020-12) with the keywords of draft-07, names checked as we do."""
     if isinstance(node, list):
         return [_to_draft_07(item) for item in node]
     if isinstance(node, str):
@@ -23,4 +23,5 @@ def _to_draft_07(node: Any) -> Any:
     if not isinstance(node, dict):
         return node
     names = {"$defs": "definitions", "prefixItems": "items"}
-    return {names.get(key, key): _to_draft_07(item) for key, item in node.items()}
+    closed = {"additionalProperties": False} if "patternProperties" in node else {}
+    return {names.get(key, key): _to_draft_07(item) for key, item in node.items()} | closed

@@ -1,0 +1,130 @@
+"""``rodsim sweep``."""
+
+import shlex
+import signal
+from contextlib import contextmanager
+from pathlib import Path
+
+import click
+
+from rodsim.commands.common import case_argument, prepare_numba, set_option
+
+_FILE, _FOLDER = (click.Path(path_type=Path, dir_okay=d, file_okay=not d) for d in (False, True))
+
+
+# fmt: off
+@click.command()
+@case_argument
+@set_option
+@click.option("--table", type=_FILE, metavar="FILE.csv",
+              help="One run for each row; the first row names the keys.")
+@click.option("-o", "--output", "folder", type=_FOLDER, default="sweep", show_default=True,
+              help="Folder for the runs and summary.csv.")
+@click.option("-j", "--jobs", type=click.IntRange(1, 1024), metavar="N",
+              help="Runs at once on this machine; by default as many as fill it.")
+@click.option("--threads", type=click.IntRange(1, 1024), metavar="N",
+              help="Threads of each run; by default what is left when -j runs share the machine.")
+@click.option("--scheduler", metavar="ADDRESS",
+              help="Use the workers of a running Dask scheduler, e.g. tcp://node:8786.")
+@click.option("--list", "only_list", is_flag=True,
+              help="Print the commands that are left to do, one per line, and run none.")
+@click.option("--period", metavar="EXPRESSION",
+              help="Measure speed over whole periods after the first, e.g. '2*pi/sigma'.")
+@click.option("--reference", type=_FILE, metavar="OUT.h5",
+              help="Give the largest distance from this output, at the end, as the error.")
+@click.option("--plot", "plots", type=(str, str, _FILE), multiple=True, metavar="X Y FILE",
+              help="Draw one column over another (needs rodsim[plot]).")
+@click.option("-q", "--quiet", is_flag=True, help="No progress.")
+def sweep(case_path, overrides, table, folder, jobs, threads, scheduler, only_list, period,
+          reference, plots, quiet):
+    # fmt: on
+    """Run a case for many values: --set KEY=[A,B,C] runs over a list, here or on a cluster.
+
+    Each run has a folder of its own. The same command again goes on: what has finished is skipped,
+    what was stopped is resumed.
+    """
+    from rodsim.sweep.plan import make_plan
+    from rodsim.sweep.summary import Summary
+    from rodsim.sweep.work import DONE, command
+
+    plan = make_plan(case_path, overrides, table, folder)
+    summary = Summary(plan, period, reference)
+    pictures = [(summary.column(x), summary.column(y), path) for x, y, path in plots]
+    left = [run for run in plan.runs if summary.rows[run.name]["status"] not in DONE]
+    for run in left:
+        run.prepare()
+    if only_list:
+        for run in left:
+            click.echo(shlex.join(command(run, summary.rows[run.name]["status"])))
+        return
+    table_path = folder / "summary.csv"
+    try:
+        if left:
+            _run(left, summary, table_path, (jobs, threads, scheduler, quiet))
+    except KeyboardInterrupt:
+        pass  # the table says what is left, the exit code too
+    finally:
+        folder.mkdir(parents=True, exist_ok=True)
+        summary.write(table_path)
+        click.echo(summary.text())
+        for x, y, path in pictures:
+            _draw(summary, x, y, path)
+    summary.check()
+
+
+def _run(left, summary, table_path, options):
+    """Start the engine and do what is left."""
+    jobs, threads, scheduler, quiet = options
+    from rodsim.sweep import engine
+    from rodsim.sweep.display import make_display
+
+    if scheduler:
+        cluster = engine.remote_cluster(scheduler)
+    else:
+        _compile(left, quiet)
+        jobs, threads = engine.share(len(left), jobs, threads)
+        cluster = engine.local_cluster(jobs, threads)
+    with _signals_stop(), cluster as client, make_display(summary, quiet) as display:
+
+        def ended(run, failure):
+            display.ended(summary.update(run, failure))
+            summary.write(table_path)
+
+        engine.Sweep(client, threads, ended).finish(left, display)
+
+
+def _compile(left, quiet):
+    """Compile once what the runs need, instead of in every one of them at the same time."""
+    prepare_numba()
+    from rodsim.case import load_case
+    from rodsim.warmup import ensure_compiled
+
+    for run in left:
+        ensure_compiled(load_case(run.case), lambda line: quiet or click.echo(line, err=True))
+
+
+@contextmanager
+def _signals_stop():
+    """Let what ends a job from outside stop it as Ctrl-C does."""
+
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    numbers = [signal.SIGINT, signal.SIGTERM]
+    hangup = getattr(signal, "SIGHUP", None)  # not everywhere; nohup has it ignored
+    if hangup and signal.getsignal(hangup) != signal.SIG_IGN:
+        numbers.append(hangup)
+    before = {number: signal.signal(number, interrupt) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _draw(summary, x, y, path):
+    from rodsim.plotting.columns import plot_columns
+
+    xs, ys, groups = summary.series(x, y)
+    plot_columns(path, xs, ys, groups, (summary.head(x), summary.head(y)))
+    click.echo(f"drew {path}", err=True)

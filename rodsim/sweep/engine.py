@@ -1,0 +1,125 @@
+"""Dask distributed as the engine of a sweep: here, or on the cluster of a scheduler."""
+
+from __future__ import annotations
+
+import logging
+import signal
+import uuid
+from contextlib import contextmanager
+from time import sleep
+
+from rodsim.errors import DivergedError, StoppedError, UsageError
+from rodsim.sweep.summary import last_line
+from rodsim.sweep.work import stop, work
+
+try:
+    import distributed
+    from dask.system import CPU_COUNT
+except ImportError as error:
+    raise UsageError("sweep needs Dask: pip install 'rodsim[sweep]'") from error
+
+ATTEMPTS = 5  # how often a run that was stopped by someone else is resumed
+POLL_SECONDS = 0.2
+CONNECT_SECONDS = 15
+
+
+def share(runs: int, jobs: int | None, threads: int | None) -> tuple[int, int]:
+    """Return (runs at once, threads of each) that fill this machine.
+
+    Many runs on one thread each are faster than a few on many, so threads are only raised where
+    there are fewer runs than cores.
+    """
+    jobs = jobs or max(1, min(runs, CPU_COUNT // (threads or 1)))
+    return jobs, threads or max(1, CPU_COUNT // jobs)
+
+
+class _Undisturbed(distributed.WorkerPlugin):
+    """Ctrl-C on the terminal is for the sweep itself, not for its workers.
+
+    A handler and not SIG_IGN: that one the runs would inherit.
+    """
+
+    def setup(self, worker):
+        signal.signal(signal.SIGINT, lambda *_: None)
+
+
+@contextmanager
+def local_cluster(jobs: int, threads: int):
+    """Start workers on this machine, one run at a time each; yield their client."""
+    with (
+        distributed.LocalCluster(
+            n_workers=jobs,
+            threads_per_worker=1,
+            processes=True,
+            memory_limit=0,
+            dashboard_address=None,
+            silence_logs=logging.CRITICAL,
+            env={"NUMBA_NUM_THREADS": str(threads)},
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        client.register_plugin(_Undisturbed())
+        yield client
+
+
+@contextmanager
+def remote_cluster(address: str):
+    """Connect to a scheduler that is there already; yield the client."""
+    try:
+        client = distributed.Client(address, timeout=CONNECT_SECONDS)
+    except (OSError, TimeoutError, ValueError) as error:
+        raise UsageError(f"--scheduler {address}: cannot be reached: {error}") from error
+    with client:
+        yield client
+
+
+class Sweep:
+    """Runs on their way through a cluster. ``ended(run, failure)`` is called for each.
+
+    ``failure`` is the text of what went wrong, or None where the output says how the run ended.
+    """
+
+    def __init__(self, client, threads, ended):
+        self.client, self.threads, self.ended = client, threads, ended
+        self.token = uuid.uuid4().hex
+        self.pending, self.attempts, self.stopping = {}, {}, False
+
+    def finish(self, runs, display) -> None:
+        """Do all runs. Ctrl-C stops them, ready to be resumed; a second one does not wait."""
+        for run in runs:
+            self._submit(run)
+        try:
+            self._wait(display)
+        except KeyboardInterrupt:
+            self.stopping = True
+            display.say("stopping the runs, they can be resumed; Ctrl-C again leaves at once")
+            self._wait(display)
+            raise
+
+    def _submit(self, run):
+        attempt = self.attempts[run.name] = self.attempts.get(run.name, 0) + 1
+        key = f"{run.name} {self.token} {attempt}"
+        future = self.client.submit(work, self.token, run, self.threads, key=key, pure=False)
+        self.pending[future] = run
+
+    def _wait(self, display):
+        while self.pending:
+            if self.stopping:  # again and again: a worker may have been started since
+                self.client.run(stop, self.token, on_error="ignore")
+            for future in [future for future in self.pending if future.done()]:
+                self._end(self.pending.pop(future), future)
+            display.look()
+            sleep(POLL_SECONDS)
+
+    def _end(self, run, future):
+        """Resume a run that someone else has stopped or killed, such as a queue out of time."""
+        problem = future.exception()
+        if problem is not None:
+            return self.ended(run, f"{type(problem).__name__}: {problem}".split("\n")[0])
+        code = future.result()
+        cut_short = code == StoppedError.exit_code or code < 0  # negative: by a signal
+        if cut_short and not self.stopping and self.attempts[run.name] < ATTEMPTS:
+            return self._submit(run)
+        if code in (0, DivergedError.exit_code) or cut_short:
+            return self.ended(run, None)
+        return self.ended(run, last_line(run.log) or f"its command ended with code {code}")

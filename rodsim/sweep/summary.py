@@ -1,0 +1,217 @@
+"""One row for each run: what it was, how it ended, what came out. Read from the outputs alone."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from rodsim.analysis.energy import PARTS
+from rodsim.analysis.swimming import swimming_velocity
+from rodsim.case import Expression, ExpressionError
+from rodsim.errors import FileError, SweepError, UsageError
+from rodsim.output import open_trajectory
+from rodsim.sweep.plan import Plan, Run
+from rodsim.sweep.work import standing
+from rodsim.units import unit_text
+
+VELOCITY, ENERGY = (0, 1, -1), (1, 2, -2)
+RESULTS = {  # column -> dimension
+    "status": (0, 0, 0),
+    "time": (0, 0, 1),
+    "speed": VELOCITY,
+    **{f"velocity_{axis}": VELOCITY for axis in "xyz"},
+    **{f"{part}_energy": ENERGY for part in (*PARTS, "elastic", "kinetic")},
+    "error": (0, 1, 0),
+    "evaluations": (0, 0, 0),
+    "wall_seconds": (0, 0, 0),
+    "message": (0, 0, 0),
+}
+SHOWN = ("status", "time", "speed", "elastic_energy", "error", "wall_seconds")  # on the terminal
+
+
+@dataclass
+class Summary:
+    """The table of a sweep, and how its rows are made.
+
+    ``period`` : expression in the parameters; the speed is then that over whole periods after the
+    first, otherwise that over the whole run. ``reference`` : an output file; the error is then the
+    largest distance of a point from where it is there, at the end of both.
+    """
+
+    plan: Plan
+    period: str | None = None
+    reference: Any = None
+    rows: dict[str, dict[str, Any]] = field(default_factory=dict)
+
+    def __post_init__(self):
+        self._reference = _last_frame(self.reference) if self.reference else None
+        for run in self.plan.runs:
+            _period(self.period, run)  # a wrong expression shows before the runs, not after
+            self.update(run)
+
+    @property
+    def columns(self) -> list[str]:
+        """Names of the columns."""
+        return ["run", *self.plan.key_units, *RESULTS]
+
+    def head(self, column: str) -> str:
+        """Return the head of a column, with its unit."""
+        unit = self.plan.key_units.get(column, "")
+        if column in RESULTS:
+            unit = unit_text(RESULTS[column], self.plan.runs[0].data["units"])
+        return f"{column} ({unit})" if unit not in ("", "1") else column
+
+    def column(self, name: str) -> str:
+        """Return the column that a name stands for, ``parameters.b`` or just ``b``."""
+        found = [c for c in self.columns if name in (c, c.rpartition(".")[2])]
+        if len(found) != 1:
+            raise UsageError(f"no column {name}: there is {', '.join(self.columns)}")
+        return found[0]
+
+    def update(self, run: Run, failure: str | None = None) -> dict[str, Any]:
+        """Read a run anew; ``failure`` is why its command could not do it. Returns its row."""
+        status = standing(run)
+        row = {"run": run.name, **run.values, "status": "failed" if failure else status}
+        if status != "waiting":
+            row |= self._results(run)
+        if failure or status == "diverged":
+            row["message"] = failure or last_line(run.log, "diverged in step")
+        self.rows[run.name] = row
+        return row
+
+    def _results(self, run):
+        with open_trajectory(run.output) as output:
+            if not output.frames:
+                return {}
+            energies = {
+                name: float(output.observable(name, -1).sum())
+                for name in output.observables
+                if name in RESULTS
+            }
+            energies["elastic_energy"] = sum(energies[f"{part}_energy"] for part in PARTS)
+            velocity = _velocity(output, _period(self.period, run))
+            cost = {k: v for k, v in output.runtime.items() if k in RESULTS}
+            error = self._error(output)
+            time = float(output.time[-1])
+        return {"time": time, **velocity, **energies, **error, **cost}
+
+    def _error(self, output):
+        if self._reference is None:
+            return {}
+        time, position = self._reference
+        if position.shape != (output.points, 3) or abs(output.time[-1] - time) > 1e-9 * time:
+            return {}
+        distance = np.linalg.norm(output.read("position", -1) - position, axis=1)
+        return {"error": float(distance.max())}
+
+    def check(self) -> None:
+        """Raise SweepError unless every run has finished."""
+        counts = Counter(row["status"] for row in self.rows.values())
+        if counts.total() > counts["finished"]:
+            raise SweepError(counts)
+
+    def series(self, x: str, y: str) -> tuple[list, list, list[str]]:
+        """Return two columns and the name of each row's line, of the rows that have both.
+
+        A line is named by the other keys of the sweep, without those that follow from ``x`` and
+        the keys before: a table often changes several together.
+        """
+        rows = [row for row in self.rows.values() if {x, y} <= row.keys()]
+        names: list[tuple[str, ...]] = [()] * len(rows)
+        for key in [key for key in self.plan.key_units if key not in (x, y)]:
+            values = [_short(row.get(key, "")) for row in rows]
+            known = {(_short(row[x]), name) for row, name in zip(rows, names, strict=True)}
+            told = {(_short(row[x]), n, v) for row, n, v in zip(rows, names, values, strict=True)}
+            if len(told) > len(known):
+                short = key.rpartition(".")[2]
+                names = [(*n, f"{short} = {v}") for n, v in zip(names, values, strict=True)]
+        columns = [[_plain(row[c]) for row in rows] for c in (x, y)]
+        return *columns, [", ".join(name) for name in names]
+
+    def write(self, path) -> None:
+        """Write the table as CSV, whole or not at all."""
+        partial = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+        try:
+            with partial.open("w", newline="", encoding="utf-8") as stream:
+                out = csv.writer(stream)
+                out.writerow([self.head(column) for column in self.columns])
+                for row in self.rows.values():
+                    out.writerow([_cell(row.get(column, "")) for column in self.columns])
+            os.replace(partial, path)
+        except OSError as error:
+            raise FileError(f"{path}: cannot be written: {error.strerror}") from error
+
+    def text(self) -> str:
+        """Return the most important columns as aligned text."""
+        present = set().union(*self.rows.values())
+        columns = [c for c in (*self.plan.key_units, *SHOWN) if c in present]
+        cells = [[self.head(c) for c in columns]]
+        cells += [[_short(row.get(c, "")) for c in columns] for row in self.rows.values()]
+        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        lines = ["  ".join(c.rjust(w) for c, w in zip(line, widths, strict=True)) for line in cells]
+        return "\n".join(lines)
+
+
+def _velocity(output, period):
+    """Return speed and velocity of the centroid of all points, where frames allow."""
+    if output.frames < 2:
+        return {}
+    try:
+        velocity = (
+            swimming_velocity(output.time, output.position, period)
+            if period
+            else np.polyfit(output.time, output.position.mean(axis=1), 1)[0]
+        )
+    except UsageError:  # stopped or diverged before the second period was whole
+        return {}
+    named = {f"velocity_{axis}": float(v) for axis, v in zip("xyz", velocity, strict=True)}
+    return {"speed": float(np.linalg.norm(velocity)), **named}
+
+
+def _period(text, run):
+    """Return the period of a run, or None where none is given."""
+    if text is None:
+        return None
+    try:
+        value = float(Expression(text, run.data["parameters"])(np.zeros(()), 0.0))
+    except ExpressionError as error:
+        raise UsageError(f"--period {text}: {error}") from error
+    if not 0.0 < value < np.inf:
+        raise UsageError(f"--period {text}: is {value:g} for the run {run.name}: must be > 0")
+    return value
+
+
+def _last_frame(path):
+    with open_trajectory(path) as output:
+        if not output.frames:
+            raise FileError(f"{path}: has no frames")
+        return float(output.time[-1]), output.read("position", -1)
+
+
+def last_line(log, start: str = "") -> str:
+    """Return the last line of a log that is not empty and begins so, or nothing."""
+    try:
+        lines = log.read_text(encoding="utf-8", errors="replace").split("\n")
+    except OSError:
+        return ""
+    return next((line for line in reversed(lines) if line.strip() and line.startswith(start)), "")
+
+
+def _cell(value):
+    if isinstance(value, float):
+        return repr(value)
+    return value if isinstance(value, str | int) else json.dumps(value)
+
+
+def _plain(value):
+    return value if isinstance(value, int | float) else _cell(value)
+
+
+def _short(value):
+    return f"{value:.5g}" if isinstance(value, float) else str(_cell(value))

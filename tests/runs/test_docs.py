@@ -1,0 +1,130 @@
+"""Every command and every piece of Python in the README and docs/ runs, as printed."""
+
+import os
+import re
+import subprocess
+import sys
+from itertools import groupby
+from pathlib import Path
+
+import pytest
+from scenes import ROOT
+
+from rodsim.cli import COMMANDS
+
+PAGES = sorted((ROOT / "docs").glob("*.md"))
+SLOW = ("choosing", "sweeps")  # minutes where the machine is not quiet; and below, the tutorial
+LATER = {"plot", "flow", "export", "converge"} - set(COMMANDS)  # written by others at this time
+BLOCK = re.compile(r"(?:<!-- (?P<mark>[\w: ]+) -->\n)?```(?P<kind>\w+)\n(?P<text>.*?)```", re.S)
+LINK = re.compile(r"\]\((?!https?:)([^)]+)\)")
+
+
+def blocks(page, install=False):
+    """Return (language, code) of what is to run on a page, in order."""
+    found = []
+    for block in BLOCK.finditer(page.read_text(encoding="utf-8")):
+        if block["mark"] == "docs: install" and not install:
+            continue
+        if block["kind"] in ("sh", "python"):
+            found.append((block["kind"], block["text"]))
+    return found
+
+
+CODE = [
+    pytest.param(page, marks=[pytest.mark.long] * (page.stem in SLOW))
+    for page in PAGES
+    if blocks(page) and page.stem != "tutorial"
+]
+
+
+def script(found):
+    """Return one shell script of all blocks; Python that is not interrupted is one session."""
+    lines = ["set -euo pipefail"]
+    for kind, group in groupby(found, key=lambda block: block[0]):
+        text = "".join(text for _, text in group)
+        if kind == "python":
+            lines.append(f"python - <<'END_OF_PYTHON'\n{text}END_OF_PYTHON")
+        else:
+            lines += [line for line in text.splitlines() if not _is_later(line)]
+    return "\n".join(lines)
+
+
+def _is_later(line):
+    words = line.split()
+    return words[:1] == ["rodsim"] and words[1] in LATER
+
+
+def run(text, folder):
+    """Run a script as a user of this environment would, with code that is compiled already."""
+    environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}",
+                   "HOME": str(folder)}  # fmt: skip
+    del environment["NUMBA_THREADING_LAYER"]  # set for this process; it says that tbb is loaded
+    done = subprocess.run(["bash", "-c", text], cwd=folder, env=environment,
+                          capture_output=True, text=True)  # fmt: skip
+    assert done.returncode == 0, f"{text}\n--\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}"
+    return done
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("page", CODE, ids=lambda page: page.stem)
+def test_a_page_of_the_docs_runs_in_an_empty_folder(page, tmp_path):
+    run(script(blocks(page)), tmp_path)
+
+
+@pytest.mark.compiled
+def test_the_commands_of_the_readme_run(tmp_path):
+    """Its two blocks for CI are run there, from nothing; here the first one's command, and then the
+    block after it, with this environment in place of a fresh one."""
+    (tmp_path / ".venv").symlink_to(sys.prefix)
+    (tmp_path / "configs").symlink_to(ROOT / "configs")
+    marked = [(b["mark"], b["kind"], b["text"]) for b in BLOCK.finditer(_text("README.md"))]
+    first = next(text for mark, _, text in marked if mark == "ci: run")
+    ours = [("sh", first.split("&&")[-1])]
+    ours += [("sh", text) for mark, kind, text in marked if kind == "sh" and not mark]
+    ours += [("python", text) for _, kind, text in marked if kind == "python"]
+    assert len(ours) >= 3
+    run(script(ours), tmp_path)
+
+
+@pytest.mark.long
+@pytest.mark.compiled
+def test_the_tutorial_from_its_install_on(tmp_path):
+    """Word by word in an empty folder, with an environment and compiled code of its own."""
+    (tmp_path / "rodsim").symlink_to(ROOT)
+    folder = tmp_path / "first"
+    folder.mkdir()
+    text = script(blocks(ROOT / "docs" / "tutorial.md", install=True))
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("NUMBA_")}
+    environment |= {"HOME": str(tmp_path), "XDG_CACHE_HOME": str(tmp_path / "cache")}
+    done = subprocess.run(["bash", "-c", text], cwd=folder, env=environment,
+                          capture_output=True, text=True)  # fmt: skip
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert (folder / "energy.png").stat().st_size > 10_000
+    assert (folder / "sweep/summary.csv").read_text().count("finished") == 4
+
+
+def test_the_case_reference_is_that_of_the_model(tmp_path):
+    made = subprocess.run(
+        [sys.executable, "-c", "import case_reference; print(case_reference.page(), end='')"],
+        cwd=ROOT / "docs", capture_output=True, text=True, check=True,
+    ).stdout  # fmt: skip
+    assert made == _text("docs/case-file.md"), "run: python docs/case_reference.py"
+
+
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "README.md"], ids=lambda page: page.name)
+def test_links_lead_somewhere(page):
+    for link in LINK.findall(page.read_text(encoding="utf-8")):
+        target, _, anchor = link.partition("#")
+        found = (page.parent / target) if target else page
+        assert found.exists(), link
+        if anchor:
+            assert f"#{anchor}" in {f"#{_anchor(line)}" for line in found.read_text().splitlines()}
+
+
+def _anchor(line):
+    kept = "".join(c for c in line.lstrip("# ").lower() if c.isalnum() or c in " -_")
+    return kept.replace(" ", "-") if line.startswith("#") else ""
+
+
+def _text(name):
+    return (ROOT / name).read_text(encoding="utf-8")

@@ -1,0 +1,372 @@
+"""Sweeps: what is run, what is skipped and resumed, and what a killed worker does to them."""
+
+import csv
+import json
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from scenes import CONFIGS
+
+from rodsim import open_trajectory
+from rodsim.case import load_case
+from rodsim.cli import main
+from rodsim.errors import CaseError, UsageError
+from rodsim.sweep.plan import make_plan
+from rodsim.sweep.summary import Summary
+from rodsim.sweep.work import command, standing, work
+
+RING = str(CONFIGS / "closed_ring.yaml")
+SHORT = ("--set", "rods.ring.shape.points=40", "--set", "time.end=2e-3")
+SWIMMING = CONFIGS / "sweep_swimming_speed.csv"
+K = 1.2566370614359172  # um^-1, of the flagellum
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def call(*arguments):
+    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+def rows(path="sweep/summary.csv"):
+    with open(path, newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+# Plans ------------------------------------------------------------------------------------------
+
+
+def test_lists_make_a_grid_and_single_values_hold_for_all(here):
+    settings = ["fluid.viscosity=[2e-6, 3e-6]", "rods.ring.shape.points=[40, 50]", "time.end=0.02"]
+    plan = make_plan(RING, settings, None, "sweep")
+    assert [run.name for run in plan.runs] == [
+        "viscosity=2e-06_points=40", "viscosity=2e-06_points=50",
+        "viscosity=3e-06_points=40", "viscosity=3e-06_points=50",
+    ]  # fmt: skip
+    assert {run.data["time"]["end"] for run in plan.runs} == {0.02}
+    assert [run.data["fluid"]["viscosity"] for run in plan.runs] == [2e-6, 2e-6, 3e-6, 3e-6]
+    assert plan.key_units == {"fluid.viscosity": "g um^-1 s^-1", "rods.ring.shape.points": ""}
+    assert not (here / "sweep").exists()
+
+
+def test_entries_that_are_lists_or_mappings(here):
+    settings = ["rods.ring.strain_twist=[[1.2, 0, 0.3], ['0.4*sin(s)', 0, 0.3]]",
+                "fluid.epsilon=[{spacings: 5}, 0.37]"]  # fmt: skip
+    runs = make_plan(RING, settings, None, "sweep").runs
+    assert runs[0].data["rods"]["ring"]["strain_twist"] == [1.2, 0.0, 0.3]
+    assert runs[3].data["rods"]["ring"]["strain_twist"][0] == "0.4*sin(s)"
+    assert runs[3].data["fluid"]["epsilon"] == 0.37
+    assert len({run.name for run in runs}) == 4
+    assert all(len(run.name) < 200 and "/" not in run.name for run in runs)
+
+
+def test_the_case_of_a_run_says_all_by_itself(here):
+    text = Path(RING).read_text().replace("title: ", "title: 1e-3 #")
+    (here / "cases").mkdir()
+    (here / "cases/case.yaml").write_text(text.replace("1e-3 #", '"1e-3" #'))
+    plan = make_plan("cases/case.yaml", ["time.end=[0.02]"], None, "sweep")
+    plan.runs[0].prepare()
+    again = load_case(plan.runs[0].case)
+    assert again.resolved() == plan.runs[0].data
+    assert again.title == "1e-3"
+
+
+def test_shape_files_are_found_from_the_folder_of_a_run(here):
+    (here / "cases").mkdir()
+    shape = "{kind: file, path: rod.txt, spacing: 0.2}"
+    (here / "cases/case.yaml").write_text(
+        f"fluid: {{viscosity: 2e-6, epsilon: 0.3}}\nrods: {{r: {{shape: {shape},"
+        " moduli: {bending: 3e-3, twisting: 2e-3, shear: 0.7, stretch: 0.9}}}\ntime: {end: 0.5}\n"
+    )
+    run = make_plan("cases/case.yaml", ["time.end=[0.02]"], None, "sweep").runs[0]
+    assert run.data["rods"]["r"]["shape"]["path"] == str(here / "cases" / "rod.txt")
+
+
+def test_a_table_has_a_run_per_row_and_meets_the_lists(here):
+    (here / "t.csv").write_text("# a comment\nfluid.viscosity,time.end\n2e-6,0.02\n,0.03\n")
+    plan = make_plan(RING, ["rods.ring.shape.points=[40, 50]"], "t.csv", "sweep")
+    seen = [(r.data["fluid"]["viscosity"], r.data["time"]["end"]) for r in plan.runs]
+    assert seen == [(2e-6, 0.02)] * 2 + [(1e-6, 0.03)] * 2
+
+
+@pytest.mark.parametrize(
+    ("settings", "table", "error", "words"),
+    [
+        (["time.end=[0.02, -3]"], None, CaseError, "time.end = -3: must be > 0"),
+        (["time.ende=[0.02]"], None, CaseError, "did you mean 'end'"),
+        (["time.end=[]"], None, UsageError, "0 runs"),
+        (["time.end=[0.02, 0.02]"], None, UsageError, "twice"),
+        ([f"time.end={list(range(1, 200))}", f"fluid.epsilon={list(range(1, 200))}"], None,
+         UsageError, "39601 runs: must be 1 to 10000"),
+        ([], "time.end\n0.02\n-3\n", CaseError, "t.csv:3: time.end = -3: must be > 0"),
+        ([], "time.end\n0.02,4\n", CaseError, "t.csv:2: has 2 cells where"),
+        ([], "time.end\n", UsageError, "at least one of values"),
+        (["time.end=[0.03]"], "time.end\n0.02\n", UsageError, "set by --set and by t.csv"),
+    ],
+)  # fmt: skip
+def test_a_sweep_that_cannot_be_is_refused_before_anything_is_written(
+    settings, table, error, words, here
+):
+    if table:
+        (here / "t.csv").write_text(table)
+    with pytest.raises(error, match=words.replace("[", r"\[")):
+        make_plan(RING, settings, "t.csv" if table else None, "sweep")
+    assert not (here / "sweep").exists()
+
+
+def test_the_table_of_the_paper_ends_after_whole_periods():
+    runs = make_plan(CONFIGS / "flagellum.yaml", [], SWIMMING, "sweep").runs
+    assert len(runs) == 24
+    for run in runs:
+        periods = run.data["time"]["end"] * run.data["parameters"]["sigma"] / (2 * np.pi)
+        assert periods == pytest.approx(4.0, rel=1e-9)
+
+
+# What a run has come to -------------------------------------------------------------------------
+
+
+def one(settings=()):
+    changes = [text for text in SHORT if text != "--set"]
+    plan = make_plan(RING, [*changes, "rods.ring.strain_twist=[[1.2, 0, 0.6]]", *settings],
+                     None, "sweep")  # fmt: skip
+    plan.runs[0].prepare()
+    return plan.runs[0]
+
+
+def test_only_the_same_case_counts(here):
+    run = one()
+    assert standing(run) == "waiting"
+    assert work("token", run, None) == 0
+    assert standing(run) == "finished"
+    assert command(run, "stopped")[-2:] == ["resume", str(run.output)]
+    other = one(["time.tolerance=1e-5"])
+    assert other.folder == run.folder
+    assert standing(other) == "waiting"
+    assert work("token", other, None) == 0  # what was there is renamed, not lost
+    assert standing(other) == "finished"
+    shutil.move(other.folder / "out.1.h5", run.output)
+    assert standing(run) == "finished"
+    run.output.write_text("not an output")
+    assert standing(run) == "waiting"
+
+
+def test_list_prints_what_is_left_and_a_shell_can_run_it(here):
+    arguments = ("sweep", RING, *SHORT, "--set", "time.tolerance=[1e-3, 1e-4]")
+    lines = call(*arguments, "--list").stdout.splitlines()
+    assert len(lines) == 2
+    subprocess.run(["sh", "-c", lines[0]], check=True, capture_output=True)
+    assert call(*arguments, "--list").stdout.splitlines() == lines[1:]
+
+
+def test_a_sweep_runs_then_skips_then_draws(here):
+    pytest.importorskip("matplotlib")
+    arguments = ("sweep", RING, *SHORT, "--set", "time.tolerance=[1e-3, 1e-5]")
+    first = call(*arguments)
+    assert first.exit_code == 0, first.stderr
+    assert "tolerance=0.001: finished" in first.stderr
+    assert [row["status"] for row in rows()] == ["finished", "finished"]
+    with open_trajectory("sweep/tolerance=1e-05/out.h5") as run:
+        centre = run.position.mean(axis=1)
+        velocity = np.polyfit(run.time, centre, 1)[0]
+        energy = sum(run.observable(f"{p}_energy", -1)[0]
+                     for p in ("bending", "twisting", "shear", "stretch"))  # fmt: skip
+        assert float(rows()[1]["speed (um s^-1)"]) == pytest.approx(np.hypot.reduce(velocity))
+        assert float(rows()[1]["elastic_energy (g um^2 s^-2)"]) == pytest.approx(energy)
+    written = (here / "sweep/tolerance=0.001/out.h5").stat().st_mtime_ns
+    again = call(*arguments, "--reference", "sweep/tolerance=1e-05/out.h5",
+                 "--plot", "tolerance", "error", "error.png")  # fmt: skip
+    assert again.exit_code == 0
+    assert (here / "sweep/tolerance=0.001/out.h5").stat().st_mtime_ns == written
+    assert [float(row["error (um)"]) > 0 for row in rows()] == [True, False]
+    assert (here / "error.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+
+
+def test_what_fails_or_diverges_is_reported_and_left(here):
+    """A step above its limit is refused, so that run has no output until it is forced."""
+    text = Path(RING).read_text().replace("tolerance: 1.0e-4", "integrator: euler")
+    (here / "case.yaml").write_text(text)
+    arguments = ("sweep", "case.yaml", *SHORT, "--set", "time.end=0.02",
+                 "--set", "output.interval=1e-3", "--set", "time.step=[1e-4]")  # fmt: skip
+    first = call(*arguments)
+    assert first.exit_code == 4
+    assert first.stderr.splitlines()[-1] == "1 failed"
+    assert rows()[0]["status"] == "failed"
+    assert "above the largest stable step" in rows()[0]["message"]
+    log = here / "sweep/step=0.0001/run.log"
+    with log.open("a") as stream:
+        line = shlex.split(log.read_text().splitlines()[0].removeprefix("$ "))
+        assert subprocess.run([*line, "--force"], stderr=stream).returncode == 3
+    again = call(*arguments)
+    assert again.exit_code == 3
+    assert rows()[0]["status"] == "diverged"
+    assert rows()[0]["message"].startswith("diverged in step")
+
+
+def test_a_wrong_period_column_or_scheduler_is_told_before_the_runs(here, monkeypatch):
+    monkeypatch.setattr("rodsim.sweep.engine.CONNECT_SECONDS", 1)
+    arguments = ("sweep", RING, *SHORT, "--set", "time.tolerance=[1e-3, 1e-4]")
+    for extra, words in (
+        (("--period", "2*pi/sigma"), "sigma"),
+        (("--plot", "tolerance", "sped", "x.png"), "no column sped"),
+        (("--scheduler", "tcp://127.0.0.1:9"), "cannot be reached"),
+    ):
+        result = call(*arguments, *extra)
+        assert result.exit_code == 2
+        assert words in result.stderr
+
+
+# Workers that are killed ------------------------------------------------------------------------
+
+
+@contextmanager
+def real_cluster(folder):
+    """A scheduler and two workers, each a process of its own; yields (address, workers)."""
+    file = folder / "scheduler.json"
+    dask = [sys.executable, "-m", "distributed.cli.dask_"]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": folder}
+    start = [*dask[:2], dask[2] + "scheduler", "--scheduler-file", str(file), "--no-dashboard",
+             "--host", "127.0.0.1", "--port", "0"]  # fmt: skip
+    serve = [*dask[:2], dask[2] + "worker", "--scheduler-file", str(file), "--no-nanny",
+             "--nthreads", "1", "--no-dashboard"]  # fmt: skip
+    processes = [subprocess.Popen(start, **quiet)]
+    try:
+        wait_for(file.exists)
+        processes += [subprocess.Popen(serve, **quiet) for _ in range(2)]
+        yield json.loads(file.read_text())["address"], processes[1:]
+    finally:
+        for process in processes:
+            process.kill()
+            process.wait()
+
+
+def wait_for(condition, seconds=60):
+    for _ in range(20 * seconds):
+        if condition():
+            return
+        time.sleep(0.05)
+    raise AssertionError("waited in vain")
+
+
+def run_of(worker):
+    """Return the process of the run that a worker is doing, with its output, or None."""
+    import psutil
+
+    for child in psutil.Process(worker.pid).children():
+        line = child.cmdline()
+        if "rodsim" in line and line[-1].endswith("out.h5"):
+            return child, line[-1]
+    return None
+
+
+def well_begun(worker):
+    """Whether a worker's run has written some frames, but not half of them."""
+    found = run_of(worker)
+    if not found:
+        return False
+    try:
+        with open_trajectory(found[1]) as run:
+            return 3 <= run.frames <= 50
+    except Exception:  # not there yet
+        return False
+
+
+def start_and_kill_one(arguments, address, workers):
+    """Start a sweep, kill a worker and its run in the middle; return (output killed, result)."""
+    sweep = [sys.executable, "-m", "rodsim", "sweep", *map(str, arguments), "--scheduler", address]
+    with subprocess.Popen(sweep, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as p:
+        wait_for(lambda: p.poll() is not None or well_begun(workers[0]), 300)
+        assert p.poll() is None, p.communicate()
+        process, output = run_of(workers[0])
+        workers[0].kill()
+        process.kill()
+        p.communicate()
+    return output, p.returncode
+
+
+@pytest.mark.compiled
+def test_a_killed_worker_loses_nothing(here):
+    """Its run is resumed by the other worker, to the same bits as a run that nobody disturbed."""
+    slow = ("--set", "rods.ring.shape.points=[60, 64]", "--set", "time.tolerance=1e-9")
+    with real_cluster(here) as (address, workers):
+        killed, code = start_and_kill_one((RING, *slow), address, workers)
+    assert code == 0
+    assert [row["status"] for row in rows()] == ["finished"] * 2
+    folder = (here / killed).parent
+    assert "rodsim resume" in (folder / "run.log").read_text()
+    undisturbed = call("run", folder / "case.yaml", "-o", "alone.h5", "-q")
+    assert undisturbed.exit_code == 0
+    with open_trajectory(killed) as run, open_trajectory("alone.h5") as alone:
+        assert np.array_equal(run.position, alone.position)
+        assert np.array_equal(run.director, alone.director)
+
+
+@pytest.mark.compiled
+def test_ctrl_c_stops_the_runs_and_the_same_command_goes_on(here):
+    arguments = ["sweep", RING, "--set", "rods.ring.shape.points=[60, 64, 68]",
+                 "--set", "time.tolerance=1e-10", "-j", "2"]  # fmt: skip
+    with subprocess.Popen(
+        [sys.executable, "-m", "rodsim", *arguments],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    ) as sweep:  # fmt: skip
+        wait_for(lambda: len(list(here.glob("sweep/*/out.h5"))) == 2)
+        sweep.send_signal(signal.SIGINT)
+        _, said = sweep.communicate()
+    assert sweep.returncode == 75
+    assert "Traceback" not in said
+    assert not list(here.glob("sweep/*/out.h5.lock"))
+    states = sorted(row["status"] for row in rows())
+    assert states == ["stopped", "stopped", "waiting"]
+    lines = call(*arguments, "--list").stdout.splitlines()
+    assert sum(" resume " in line for line in lines) == 2
+    assert sum(" run " in line for line in lines) == 1
+
+
+@pytest.mark.long
+@pytest.mark.paper
+@pytest.mark.compiled
+def test_swimming_speed_over_amplitude_and_frequency(here):
+    """Fig. 6: 24 cases on two workers, one of them killed.
+
+    The infinite regularised filament swims at V = 0.340 k sigma b^2/2 while b is small (eps =
+    0.4667 um); finite rods approach that from below, one of 8 wavelengths has at least 0.28. The
+    rod follows its preferred shape at once, so V is in proportion to sigma at any b: 2 % are the
+    lag of a bending rate of 1e4 1/s behind 250-550 rad/s.
+    """
+    arguments = (CONFIGS / "flagellum.yaml", "--table", SWIMMING, "--set", "output.interval=null",
+                 "--period", "2*pi/sigma")  # fmt: skip
+    with real_cluster(here) as (address, workers):
+        _, code = start_and_kill_one(arguments, address, workers)
+    assert code == 0
+    table = rows()
+    assert [row["status"] for row in table] == ["finished"] * 24
+    factors = {}
+    for row in table:
+        b, sigma = float(row["parameters.b"]), float(row["parameters.sigma"])
+        factor = float(row["velocity_z (um s^-1)"]) / (0.5 * K * sigma * b**2)
+        factors.setdefault(b, []).append(factor)
+    assert all(0.28 < factor < 0.34 for factor in factors[0.075])
+    for values in factors.values():
+        assert values == pytest.approx([values[0]] * 4, rel=0.03)
+
+
+def test_series_name_lines_by_what_does_not_follow_from_x(here):
+    (here / "t.csv").write_text("fluid.viscosity,time.end\n2e-6,0.02\n3e-6,0.03\n")
+    plan = make_plan(RING, ["rods.ring.shape.points=[40, 50]"], "t.csv", "sweep")
+    summary = Summary(plan)
+    for row in summary.rows.values():
+        row["speed"] = 5.0
+    assert set(summary.series("fluid.viscosity", "speed")[2]) == {"points = 40", "points = 50"}
+    lines = summary.series("rods.ring.shape.points", "speed")[2]
+    assert set(lines) == {"viscosity = 2e-06", "viscosity = 3e-06"}
