@@ -165,6 +165,48 @@ def write(path, rows):
     return rows
 
 
+STYLES = {"open_rod": ("o", "#0b4f8a"), "closed_ring": ("s", "#d1660f"),
+          "flagellum": ("^", "#3a7d2c")}  # fmt: skip
+DASHES = {"algebraic7": "-", "algebraic9": "--"}
+
+
+def draw(folder, scenes, blobs):
+    """Draw error-space.png and error-time.png from the tables in a folder."""
+    from matplotlib.figure import Figure
+
+    space, time = (Figure(figsize=(11, 4.6), layout="constrained") for _ in range(2))
+    left, right = space.subplots(1, 2)
+    table = "spacing", "epsilon / ds", "error / length"
+    _lines(left, folder, scenes, blobs, *table)
+    left.set(xlabel="epsilon / ds", ylabel="error of the spacing, over the rod's length")
+    left.axhline(0.01, c="0.6", lw=1)
+    table = "epsilon", "epsilon / the case's", "difference / length"
+    _lines(right, folder, scenes, blobs, *table)
+    right.set(xlabel="epsilon / the case's", ylabel="difference from the case, over the length")
+    left, right = time.subplots(1, 2)
+    for axis, column in ((left, "evaluations"), (right, "steps")):
+        for method, fill in (("rkc", "full"), ("euler", "none")):
+            table = "time", column, "error / length"
+            _lines(axis, folder, scenes, blobs[:1], *table, method=method, fillstyle=fill)
+        axis.set(xlabel=column, ylabel="error in time, over the rod's length")
+    for figure, name in ((space, "space"), (time, "time")):
+        figure.savefig(folder / f"error-{name}.png", dpi=110)
+
+
+def _lines(axis, folder, scenes, blobs, name, x, y, method=None, **style):
+    for scene, blob in product(scenes, blobs):
+        path = folder / f"{name}-{scene}-{blob}.csv"
+        with path.open() as stream:
+            rows = [r for r in csv.DictReader(stream) if method in (None, r.get("method"))]
+        points = sorted((float(r[x]), float(r[y])) for r in rows if float(r[y] or 0) > 0)
+        marker, colour = STYLES[scene]
+        label = f"{scene}, {method or blob}"
+        axis.loglog(*zip(*points, strict=True), DASHES[blob], marker=marker, c=colour,
+                    label=label, **style)  # fmt: skip
+    axis.grid(color="0.9")
+    axis.legend(frameon=False, fontsize=8)
+
+
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.option("--scene", "scenes", multiple=True, type=click.Choice(SCENES), default=SCENES)
 @click.option("--blob", "blobs", multiple=True, type=click.Choice(BLOBS), default=BLOBS)
@@ -190,6 +232,7 @@ def main(scenes, blobs, folder):
                 write(folder / f"{name}-{scene}-{blob}.csv", rows(grids[-1]))
     for scene, blob in product(scenes, blobs):
         write(folder / f"time-{scene}-{blob}.csv", time_rows(scene, blob))
+    draw(folder, scenes, blobs)
 
 
 if __name__ == "__main__":
