@@ -118,8 +118,10 @@ class RodSystem:
         """Return the first point whose triad is a half-turn from the next one's, or -1."""
         return first_half_turn(state.director, self.scene.rods.tables)
 
-    def observe(self, state: State) -> tuple[dict, dict]:
+    def observe(self, state: State, rates: np.ndarray | None = None) -> tuple[dict, dict]:
         """Return all fields and observables of a state, for a frame.
+
+        ``rates``: (u, w) of the rods (6, N) where they are known, else they are evaluated.
 
         Fields: position, director, velocity, angular_velocity, force, torque, tracers, as
         structure of arrays. Observables: the energies (6), power sum_k (g.u + m.w), length,
@@ -128,8 +130,9 @@ class RodSystem:
         """
         scene, rods = self.scene, self.scene.rods
         X, loads = state.position, self._point_loads(state)
-        rates = np.empty(self._shape)
-        self._velocity(X, X, loads, scene.epsilon, scene.viscosity, rates)
+        if rates is None:
+            rates = np.empty(self._shape)
+            self._velocity(X, X, loads, scene.epsilon, scene.viscosity, rates)
         split, length = np.empty((4, len(rods.names))), np.empty(len(rods.names))
         energies(X, state.director, scene.strain_twist(state.time), rods.tables, split, length)
         observables = dict(zip(ENERGIES, split, strict=True))

@@ -74,12 +74,13 @@ class Recorder:
         """Write the frames that lie in a step, each at its exact time; return how many."""
         times, before, last = self.writer.times, self.next_frame, step.end.time
         while self.next_frame < len(times) and times[self.next_frame] <= last * (1.0 + 1e-12):
-            self._write(step.number, step.at(min(times[self.next_frame], last)))
+            time = min(times[self.next_frame], last)
+            self._write(step.number, step.at(time), step.velocities_at(time))
         return self.next_frame - before
 
-    def _write(self, number, state):
+    def _write(self, number, state, rates=None):
         begin = perf_counter()
-        self.writer.write_frame(self.next_frame, number, *self.system.observe(state))
+        self.writer.write_frame(self.next_frame, number, *self.system.observe(state, rates))
         self.next_frame += 1
         self.output_seconds += perf_counter() - begin
 

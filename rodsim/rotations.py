@@ -73,6 +73,22 @@ def rotate(theta, D, out):
         _turn(a, b, tx, ty, tz, D, k, out)
 
 
+def angular_velocity(theta: np.ndarray, rate: np.ndarray) -> np.ndarray:
+    """Return w of triads exp(theta x) D where d theta/dt is ``rate``; all (3, N).
+
+    w = rate + (1 - cos a)/a^2 theta x rate + (a - sin a)/a^3 theta x (theta x rate), a = |theta|:
+    the differential of exp, of which ``rotation_vector_rate`` is the inverse.
+    """
+    angle2 = np.sum(theta**2, axis=0)
+    angle = np.sqrt(angle2)
+    first = 0.5 * np.sinc(angle / (2.0 * np.pi)) ** 2
+    small = angle2 < 1e-2
+    series = 1.0 / 6.0 - angle2 / 120.0 * (1.0 - angle2 / 42.0 * (1.0 - angle2 / 72.0))
+    second = np.where(small, series, (1.0 - np.sinc(angle / np.pi)) / np.where(small, 1.0, angle2))
+    turned = np.cross(theta, rate, axis=0)
+    return rate + first * turned + second * np.cross(theta, turned, axis=0)
+
+
 @kernel(f"void({MAT}, {MAT})")
 def rotation_vector_rate(theta, w):
     """Replace the angular velocity w by d theta/dt = w - 1/2 theta x w + 1/12 theta x (theta x w).
