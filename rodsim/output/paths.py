@@ -79,16 +79,6 @@ class OutputLock:
         except (OSError, ValueError):
             pass  # gone or not ours: nothing to give back
 
-    def held(self) -> bool:
-        """Return whether someone who may be alive has the lock; takes nothing."""
-        try:
-            self._refuse_if_alive(self.path.read_text())
-        except FileNotFoundError:
-            return False
-        except (OSError, ValueError, FileError):
-            return True
-        return False
-
     def _create(self):
         try:
             handle = os.open(self.path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644)

@@ -9,7 +9,7 @@ import click
 
 from rodsim.errors import FileError
 from rodsim.output import open_trajectory
-from rodsim.output.paths import OutputLock
+from rodsim.output.paths import writing_process
 from rodsim.sweep.summary import Summary
 
 REFRESH_SECONDS = 1.0
@@ -118,7 +118,7 @@ class Table(Lines):
         if row["status"] in ("finished", "diverged", "failed"):
             return 1.0, row["status"]
         end = run.data["time"]["end"]
-        if not OutputLock(run.output).path.exists():
+        if not writing_process(run.output):
             return row.get("time", 0.0) / end, row["status"]
         try:
             with open_trajectory(run.output) as output:

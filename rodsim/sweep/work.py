@@ -92,10 +92,10 @@ def _execute(sweep, run, line, threads):
 
 def _wait_until_free(output):
     """Wait while another process writes the output; give up on one that writes no more."""
-    from rodsim.output.paths import OutputLock
+    from rodsim.output.paths import writing_process
 
-    lock, seen, since = OutputLock(output), None, monotonic()
-    while lock.held():
+    seen, since = None, monotonic()
+    while writing_process(output):
         now = output.stat().st_mtime if output.exists() else None
         if now != seen:
             seen, since = now, monotonic()

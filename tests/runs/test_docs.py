@@ -58,7 +58,7 @@ def run(text, folder):
     """Run a script as a user of this environment would, with code that is compiled already."""
     environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}",
                    "HOME": str(folder)}  # fmt: skip
-    del environment["NUMBA_THREADING_LAYER"]  # set for this process; it says that tbb is loaded
+    environment.pop("NUMBA_THREADING_LAYER", None)  # of this process, which has loaded tbb
     done = subprocess.run(["bash", "-c", text], cwd=folder, env=environment,
                           capture_output=True, text=True)  # fmt: skip
     assert done.returncode == 0, f"{text}\n--\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}"

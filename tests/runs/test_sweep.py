@@ -2,11 +2,13 @@
 
 import csv
 import json
+import os
 import shlex
 import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,6 +22,7 @@ from rodsim import open_trajectory
 from rodsim.case import load_case
 from rodsim.cli import main
 from rodsim.errors import CaseError, UsageError
+from rodsim.output.paths import OutputLock
 from rodsim.sweep.plan import make_plan
 from rodsim.sweep.summary import Summary
 from rodsim.sweep.work import command, standing, work
@@ -160,6 +163,21 @@ def test_only_the_same_case_counts(here):
     assert standing(run) == "finished"
     run.output.write_text("not an output")
     assert standing(run) == "waiting"
+
+
+def test_an_output_that_is_being_written_is_waited_for(here, monkeypatch):
+    """As after a worker was killed and its run was not; not for ever where nothing is written."""
+    run = one()
+    lock = OutputLock(run.output)
+    lock.acquire()
+    monkeypatch.setattr("rodsim.sweep.work.PATIENCE", 0.3)
+    assert work("token", run, None) == 4
+    assert f"is being written by process {os.getpid()}" in run.log.read_text()
+    monkeypatch.undo()
+    monkeypatch.chdir(here)
+    threading.Timer(1.0, lock.release).start()
+    assert work("token", run, None) == 0
+    assert standing(run) == "finished"
 
 
 def test_list_prints_what_is_left_and_a_shell_can_run_it(here):
