@@ -135,7 +135,7 @@ def test_velocities_and_power_in_frames_are_smooth_at_the_default_tolerance():
 
 def ring_frames(tolerance):
     """Velocities and power of the ring at 20 times up to 20 ms."""
-    case, system = system_of("closed_ring", f"time.tolerance={tolerance}", "time.end=0.02")
+    _, system = system_of("closed_ring", f"time.tolerance={tolerance}", "time.end=0.02")
     times, frames = list(np.arange(1, 21) * 1e-3), []
     for step in RKC(system, tolerance).steps(system.scene.initial, 0.02):
         while times and times[0] <= step.end.time * (1 + 1e-12):

@@ -54,9 +54,10 @@ def test_the_fluid_moves_with_the_rods_own_points(two_rods, frame):
             stored = run.read(name, frame)
             # Rounding of strains near 1e-2, with ds = 0.15, against moduli near 1.
             assert found == pytest.approx(stored, abs=1e-12 * abs(stored).max())
-        speed = run.read("velocity", frame)
-        found = sources.velocity(run.read("position", frame))
-        assert found == pytest.approx(speed, abs=1e-10 * abs(speed).max())
+        if frame == 0:  # later ones are the derivative of the motion, not evaluated at the frame
+            speed = run.read("velocity", frame)
+            found = sources.velocity(run.read("position", frame))
+            assert found == pytest.approx(speed, abs=1e-10 * abs(speed).max())
 
 
 def test_flow_on_a_grid_equals_its_twin(two_rods):
