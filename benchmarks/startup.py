@@ -27,6 +27,25 @@ ONE_FUNCTION = """from numba import njit
 def square(x):
     return x * x
 """
+LARGE = """
+from rodsim.settings import prepare
+prepare()
+from rodsim.case import load_case
+from rodsim.machine import Machine
+from rodsim.output.writer import TrajectoryWriter
+from rodsim.recorder import Recorder, plan_output
+from rodsim.rods import build_scene
+from rodsim.snapshot import capture
+changes = "rods.ring.shape.points=100000", "output.interval=0.1"
+case = load_case({config!r}, changes)
+scene = build_scene(case)
+machine = Machine(case, scene, force=True)
+snapshot = capture(machine, Recorder(machine, 0.0, 0.0), scene.initial)
+with machine.threads(None), TrajectoryWriter.create("large.h5", plan_output(case, scene, snapshot)):
+    system = machine.system
+    system.velocities(0.0, scene.initial, system.zeros(), system.zeros())
+"""
+LARGE_NAME = "100 000 points: start, output file, one evaluation (one repeat)"
 COLUMNS = {
     "command": "command",
     "seconds": "wall time, s",
@@ -43,7 +62,8 @@ def main(quick, repeats):
     The imports of numpy, numba and h5py are the floor of any run; Numba then starts its compiler
     for the first function, even one from its cache. The warm run finds its compiled
     code in a cache filled before; the cold one gets an empty cache every time. All run in a
-    temporary folder.
+    temporary folder. The last line, not with --quick, is a large scene: the sum over 10^10 pairs
+    takes half a minute.
     """
     ENVIRONMENT.pop("NUMBA_CACHE_DIR", None)  # it would win over the caches given here
     with tempfile.TemporaryDirectory() as folder:
@@ -54,6 +74,9 @@ def main(quick, repeats):
             child()
         children[COLD] = _Command(COMMANDS[WARM], work, cold=True)
         results = interleaved(children, repeats, "commands")
+        if not quick:
+            code = LARGE.format(config=str(CONFIGS / "closed_ring.yaml"))
+            results[LARGE_NAME] = [_Command(("-c", code), work)()]
     table = Table("Whole commands", COLUMNS, rows(results))
     return [table], lambda *axes: draw(table.rows, *axes)
 
@@ -82,7 +105,7 @@ def rows(results):
             "seconds": Spread.of(values[:, 0]),
             "peak": Spread.of(values[:, 1]),
         }
-        if name.startswith(("the same", "rodsim run")):
+        if name.startswith(("the same", "rodsim run", "100 000")):
             above = values - floor
             row |= {"above": Spread.of(above[:, 0]), "peak_above": Spread.of(above[:, 1])}
         table.append(row)
