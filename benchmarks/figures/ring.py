@@ -35,7 +35,7 @@ def figure_4(place) -> list[Row]:
                 worst = max(worst, abs(stretch(X, SPACING, True)).max())
                 angle = max(angle, misalignment(X, run.read("director", frame), True).max())
         table |= {f"{name}, {omega}": values for name, values in coils[omega].items()}
-    save(figure, place.path("fig4.png"))
+    save(figure, place.path("fig4.png"), dpi=75)
     write_csv(place.path("fig4.csv"), table)
     return [_coil_row(coils), _settled_row(place), constraint_row("Rings", worst, angle)]
 
