@@ -109,7 +109,7 @@ def constraint_row(name, worst, angle):
         f"{name}: inextensible and aligned with D3 within 1 %",
         f"largest stretch {100 * worst:.2f} %; largest angle between D3 and tangent "
         f"{np.degrees(angle):.2f} degrees ({100 * np.sin(angle):.2f} % as a sine, "
-        f"{100 * (1 - np.cos(angle)):.3f} % off |D3.t| = 1)",
+        f"{100 * (1 - np.cos(angle)):.3f} % off D3.t = 1)",
         verdict([worst < 0.01, 1 - np.cos(angle) < 0.01]),
     )
 

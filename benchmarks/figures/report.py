@@ -46,6 +46,6 @@ def new_figure(width, height):
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def save(figure, path) -> None:
-    """Write a picture small enough for a repository."""
-    figure.savefig(path, dpi=90)
+def save(figure, path, dpi=90) -> None:
+    """Write a picture small enough for a repository, below 150 kB."""
+    figure.savefig(path, dpi=dpi)

@@ -12,6 +12,7 @@ from rodsim.analysis.topology import twist, writhe
 CONFIG = "closed_ring_low_twist"
 TIMES = (0.03, 0.048, 0.065, 0.083, 0.1)
 EPSILONS = (3, 4, 5, 6)
+LATE = 0.05  # s; by then the ring has buckled
 EARLY = 0.02  # s; kinetic energy is looked at after the flow of the first straightening
 
 
@@ -35,7 +36,7 @@ def figure_4(place) -> list[Row]:
                 worst = max(worst, abs(stretch(X, SPACING, True)).max())
                 angle = max(angle, misalignment(X, run.read("director", frame), True).max())
         table |= {f"{name}, {omega}": values for name, values in coils[omega].items()}
-    save(figure, place.path("fig4.png"))
+    save(figure, place.path("fig4.png"), dpi=75)
     write_csv(place.path("fig4.csv"), table)
     return [_coil_row(coils), _settled_row(place), constraint_row("Rings", worst, angle)]
 
@@ -126,6 +127,7 @@ def figure_5(place) -> list[Row]:
     draw_energies(place.path("fig5.png"), panels, curves, gib)
     write_energies(place.path("fig5.csv"), curves, gib)
     everyone = {**{f"{e} ds": c for e, c in curves.items()}, "gIB": gib}
+    everyone = {name: c for name, c in everyone.items() if c.time[-1] > LATE}  # or it was cut
     return [
         _level_row(everyone),
         _kinetic_row(everyone),

@@ -1,6 +1,7 @@
 """Quick versions of all figures: pictures, data, and the claims that hold, and that do not."""
 
 import csv
+from dataclasses import replace
 
 import pytest
 from figures.report import Row, markdown, verdict
@@ -13,7 +14,7 @@ EXPECTED = {  # rows by the start of their claim: does the code bear it out, on 
     "fig2": {"Omega_3 = pi/2": "in part", "Omega_3 = pi:": "in part", "Open rods": "yes"},
     "fig3": {"bending, twisting": "yes", "kinetic": "yes", "epsilon = 6 ds": "no"},
     "fig4": {"more coiled": "yes", "a stable coil": "in part", "Rings": "yes"},
-    "fig5": {"bending and total": "no", "kinetic": "in part"},
+    "fig5": {"bending and total": "no", "kinetic": "yes", "stretching": "yes"},
     "fig6": {"the speed grows linearly": "yes", "good agreement": "no", "shorter": "yes"},
 }
 DRAWN = {"fig2": "fig2", "fig3": "fig3", "fig4": "fig4", "fig5": "fig5", "fig6": "fig6"}
@@ -21,11 +22,13 @@ DRAWN = {"fig2": "fig2", "fig3": "fig3", "fig4": "fig4", "fig5": "fig5", "fig6":
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
-    return Workplace(tmp_path_factory.mktemp("paper"), quick=True, gib_seconds=40.0)
+    return Workplace(tmp_path_factory.mktemp("paper"), quick=True, gib_seconds=20.0)
 
 
 @pytest.mark.parametrize("name", list(EXPECTED))
 def test_a_figure(name, place):
+    # The open rod's 2000 steps of gIB are to be done; the ring's 100 000 are cut short.
+    place = replace(place, gib_seconds=20.0 if name == "fig5" else 400.0)
     rows = reproduce([name], place)
     for start, agrees in EXPECTED[name].items():
         (row,) = [row for row in rows if row.claim.startswith(start)]
