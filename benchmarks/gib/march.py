@@ -10,8 +10,9 @@ from gib.fluid import Fluid
 from rodsim.dynamics import RodSystem
 from rodsim.elasticity import point_loads
 from rodsim.errors import CaseError, DivergedError
+from rodsim.output import TrajectoryWriter
 from rodsim.progress import Silent
-from rodsim.recorder import create_writer
+from rodsim.recorder import plan_output
 from rodsim.rods import build_scene
 from rodsim.rods.state import State
 from rodsim.rotations import rotate
@@ -87,8 +88,9 @@ def simulate(
     setup, progress, begin = setup or Setup(), progress or Silent(), perf_counter()
     rods = ImmersedRods(case, setup)
     system = RodSystem(rods.scene)
-    with create_writer(case, rods.scene, output, overwrite) as writer:
-        writer.write_frame(0, 0, *observe(system, rods))
+    plan = plan_output(case, rods.scene, checkpoint={})
+    with TrajectoryWriter.create(output, plan, overwrite) as writer:
+        writer.write_frame(0, 0, *system.observe(rods.state, rods.find_rates()))
         solve, index = 0.0, 0
         while index + 1 < len(writer.times) and perf_counter() - begin < max_seconds:
             index += 1
@@ -96,7 +98,7 @@ def simulate(
             if not np.isfinite(rods.state.position).all():
                 writer.finish("diverged", {})
                 raise DivergedError(f"gIB: the rod is no longer finite at step {rods.steps}")
-            writer.write_frame(index, rods.steps, *observe(system, rods))
+            writer.write_frame(index, rods.steps, *system.observe(rods.state, rods.find_rates()))
         runtime = {
             "wall_seconds": perf_counter() - begin,
             "solve_seconds": solve,
@@ -116,15 +118,3 @@ def _march(rods, time, end, progress):
         progress.update(rods.steps * rods.step / end)
     rods.state.time = time
     return perf_counter() - start
-
-
-def observe(system, rods):
-    """Return fields and observables of a frame, with the velocities of the grid."""
-    fields, observables = system.observe(rods.state)
-    scene, loads, rates = rods.scene, rods.find_loads(), rods.find_rates()
-    fields["velocity"], fields["angular_velocity"] = rates[:3], rates[3:]
-    observables["power"] = np.add.reduceat((loads * rates).sum(axis=0), scene.rods.first)
-    speed2 = np.add.reduceat((rates[:3] ** 2).sum(axis=0), scene.rods.first)
-    tube = scene.density * np.pi * scene.epsilon**2 * scene.rods.spacing
-    observables["kinetic_energy"] = 0.5 * tube * speed2
-    return fields, observables
