@@ -174,8 +174,12 @@ class TrajectoryWriter:
         """Yield the open file; an error in the block closes this writer, as a FileError."""
         if self._file is None:
             raise FileError(f"{self.path}: is closed, after an error in writing or at its end")
+        gone = _gone(self._file)
+        if gone:
+            abandoned.append(self._file)
+            self._file = None
+            raise FileError(f"{self.path}: {gone} while the run was writing it; run the case again")
         try:
-            _refuse_if_gone(self._file)
             yield self._file
         except (OSError, RuntimeError) as error:
             abandoned.append(self._file)
@@ -185,13 +189,12 @@ class TrajectoryWriter:
             ) from error
 
 
-def _refuse_if_gone(file):
-    """Raise OSError if the file was removed, replaced or cut short by someone else."""
+def _gone(file):
+    """Return what someone else has done to the file: removed, replaced or cut it; or nothing."""
     found = os.fstat(build.descriptor(file))
     if found.st_nlink == 0:
-        raise OSError("it was removed or replaced while the run was writing it")
-    if found.st_size < file.id.get_filesize():
-        raise OSError("it was cut short while the run was writing it")
+        return "was removed or replaced"
+    return "was cut short" if found.st_size < file.id.get_filesize() else ""
 
 
 def _row(series, given, point_axis):

@@ -14,6 +14,8 @@ from rodsim.errors import StoppedError
 
 HOOK = """
 import errno, os, resource, signal, sys
+from rodsim.settings import prepare
+prepare()
 from rodsim.output.rows import Rows
 from rodsim.watch import Watch
 from rodsim.__main__ import main
@@ -65,9 +67,12 @@ def test_a_limit_of_the_file_size_shows_before_the_run(tmp_path):
 @pytest.mark.parametrize(
     ("action", "words"),
     [
-        ("os.unlink('out.h5')", "removed or replaced while the run was writing it"),
-        ("os.replace('case.yaml', 'out.h5')", "removed or replaced while the run was writing it"),
-        ("os.truncate('out.h5', 5000)", "cut short while the run was writing it"),
+        ("os.unlink('out.h5')", "out.h5: was removed or replaced while the run was writing it"),
+        (
+            "os.replace('case.yaml', 'out.h5')",
+            "out.h5: was removed or replaced while the run was writing it",
+        ),
+        ("os.truncate('out.h5', 5000)", "out.h5: was cut short while the run was writing it"),
     ],
 )
 def test_a_file_that_vanishes_stops_the_run(tmp_path, action, words):

@@ -45,7 +45,7 @@ for seed in range(int(sys.argv[3]), int(sys.argv[4])):
 
 @pytest.fixture
 def good(tmp_path):
-    with create(tmp_path / "good.h5", fields=("director",)) as writer:
+    with create(tmp_path / "good.h5", fields=("velocity",)) as writer:
         write(writer, range(5))
         writer.finish("finished", {"evaluations": 5})
     return tmp_path / "good.h5"

@@ -289,7 +289,8 @@ def test_a_signal_stops_after_the_step(tmp_path, name):
     """The signal comes in the middle of a run of a process of its own, sent by itself."""
     simulate(make(tmp_path, DRIVEN), tmp_path / "whole.h5")
     code = (
-        "import os, signal, sys; from rodsim.watch import Watch; from rodsim.__main__ import main\n"
+        "import os, signal, sys; from rodsim.settings import prepare; prepare()\n"
+        "from rodsim.watch import Watch; from rodsim.__main__ import main\n"
         "check = Watch.check\n"
         "def send(self, step):\n"
         f"    if step.number == 20: os.kill(os.getpid(), signal.{name})\n"
