@@ -16,9 +16,15 @@ import numba
 import numpy as np
 from numba import njit
 
+from rodsim.settings import load_tbb
+
 # A function from the cache can hold parallel code without Numba knowing it: the threading layer
 # must be there before it is loaded, or LLVM ends the process: "Symbol not found: allocate_sched".
-numba.get_num_threads()
+try:
+    numba.get_num_threads()
+except ValueError:  # tbb is asked for, and that of pip is not where the system looks
+    load_tbb()
+    numba.get_num_threads()
 
 VEC = "float64[::1]"
 MAT = "float64[:, ::1]"

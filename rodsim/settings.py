@@ -22,7 +22,7 @@ def prepare() -> None:
     if "NUMBA_CACHE_DIR" not in os.environ:
         os.environ["NUMBA_CACHE_DIR"] = str(_writable(cache_folder()))
     if os.environ.get("NUMBA_THREADING_LAYER", "tbb") == "tbb":
-        os.environ["NUMBA_THREADING_LAYER"] = "tbb" if _load_tbb() else "default"
+        os.environ["NUMBA_THREADING_LAYER"] = "tbb" if load_tbb() else "default"
     _let_llvm_vectorise()
     # GNU OpenMP's idle threads spin: with a busy neighbour each sum then takes milliseconds.
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
@@ -71,7 +71,7 @@ def _writable(folder):
         return tempfile.mkdtemp(prefix="rodsim-")
 
 
-def _load_tbb():
+def load_tbb() -> bool:
     """Load the library of ``pip install tbb``: Numba itself does not look where pip puts it."""
     folder = Path(sys.prefix) / ("Library/bin" if os.name == "nt" else "lib")
     for name in ("libtbb.so.12", "libtbb.12.dylib", "tbb12.dll"):
