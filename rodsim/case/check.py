@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from rodsim.case.expressions import Expression
+from rodsim.case.fields import BYTES_PER_POINT, MOST_POINTS
 from rodsim.case.model import Case, Rod, Spacings, Time, Tube
 from rodsim.case.words import did_you_mean
 from rodsim.case.yaml_text import Path
@@ -142,6 +143,10 @@ def _rods(case: Case) -> Iterator[Finding]:
 
 def _tracers(case: Case, rod_names: list[str]) -> Iterator[Finding]:
     for name, group in (case.tracers or {}).items():
+        markers = group.around * group.along if isinstance(group, Tube) else len(group)
+        if markers > MOST_POINTS:
+            gigabytes = markers * BYTES_PER_POINT / 1e9
+            yield ("tracers", name), f"{markers:.3g} markers would need about {gigabytes:.3g} GB"
         if isinstance(group, Tube) and group.rod not in rod_names:
             hint = did_you_mean(group.rod, rod_names) or f": the rods are {', '.join(rod_names)}"
             yield ("tracers", name, "rod"), f"no such rod{hint}"

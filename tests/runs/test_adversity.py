@@ -146,12 +146,13 @@ HOSTILE = {
     "100 MB": ("time:", "#" * 100_000_000 + "\ntime:", "larger than 1000000 bytes"),
 }  # fmt: skip
 MEASURED = """
-import resource, sys
+import sys
 from rodsim.__main__ import main
 try:
     main()
 finally:
-    print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, file=sys.stdout)
+    status = open("/proc/self/status").read() if sys.platform == "linux" else "VmHWM: 0"
+    print(status.partition("VmHWM:")[2].split()[0])
 """
 
 
