@@ -71,10 +71,11 @@ def simulate(
     with machine.threads(threads):
         for problem in machine.step_warnings():
             notify(str(problem))
-        inform(machine.limits)
+        limits = machine.limits  # before the first snapshot: the estimate is part of it
         recorder = Recorder(machine, started, compile_seconds + summary.compile_seconds)
         plan = plan_output(case, scene, capture(machine, recorder, scene.initial))
         with TrajectoryWriter.create(output, plan, overwrite) as recorder.writer:
+            inform(limits)
             moved = recorder.writer.renamed_to
             summary.moved = str(moved) if moved else None
             _record(machine, scene.initial, recorder, stop, progress or Silent(), summary)

@@ -10,11 +10,12 @@ from pathlib import Path
 import pytest
 from scenes import ROOT
 
-from rodsim.cli import COMMANDS
-
 PAGES = sorted((ROOT / "docs").glob("*.md"))
-SLOW = ("choosing", "sweeps")  # minutes where the machine is not quiet; and below, the tutorial
-LATER = {"plot", "flow", "export", "converge"} - set(COMMANDS)  # written by others at this time
+SLOW = (
+    "choosing",
+    "sweeps",
+    "visualization",
+)  # minutes where the machine is not quiet; and below, the tutorial
 BLOCK = re.compile(r"(?:<!-- (?P<mark>[\w: ]+) -->\n)?```(?P<kind>\w+)\n(?P<text>.*?)```", re.S)
 LINK = re.compile(r"\]\((?!https?:)([^)]+)\)")
 
@@ -23,8 +24,8 @@ def blocks(page, install=False):
     """Return (language, code) of what is to run on a page, in order."""
     found = []
     for block in BLOCK.finditer(page.read_text(encoding="utf-8")):
-        if block["mark"] == "docs: install" and not install:
-            continue
+        if block["mark"] == "docs: elsewhere" or (block["mark"] == "docs: install" and not install):
+            continue  # elsewhere: in `pytest -m paper`
         if block["kind"] in ("sh", "python"):
             found.append((block["kind"], block["text"]))
     return found
@@ -45,13 +46,8 @@ def script(found):
         if kind == "python":
             lines.append(f"python - <<'END_OF_PYTHON'\n{text}END_OF_PYTHON")
         else:
-            lines += [line for line in text.splitlines() if not _is_later(line)]
+            lines.append(text)
     return "\n".join(lines)
-
-
-def _is_later(line):
-    words = line.split()
-    return words[:1] == ["rodsim"] and words[1] in LATER
 
 
 def run(text, folder):
@@ -68,6 +64,8 @@ def run(text, folder):
 @pytest.mark.compiled
 @pytest.mark.parametrize("page", CODE, ids=lambda page: page.stem)
 def test_a_page_of_the_docs_runs_in_an_empty_folder(page, tmp_path):
+    for name in ("configs", "docs", "benchmarks"):
+        (tmp_path / name).symlink_to(ROOT / name)
     run(script(blocks(page)), tmp_path)
 
 
