@@ -20,7 +20,7 @@ class Machine:
         radius = SpectralRadius(self.system)  # one estimate serves all who need the fastest rate
         self._radius = radius
         self.integrator = make_integrator(case.time, self.system, radius)
-        self.watch = Watch(self.system, self.integrator, None if force else radius)
+        self.watch = Watch(case, self.system, self.integrator, None if force else radius)
 
     @cached_property
     def limits(self) -> Limits:

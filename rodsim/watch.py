@@ -11,12 +11,21 @@ from rodsim.rods.state import State
 
 FARTHEST = 1e3  # lengths of the scene: no rod drives itself that far in a run that works
 
-FIXED_STEP_REMEDY = (
-    "the fixed step is too long for this stiffness: halve time.step, or use integrator: rkc"
-)
-ADAPTIVE_REMEDY = (
-    "the motion is beyond the resolution of the rods: use more points, or a smaller time.tolerance"
-)
+
+def _fixed_step_remedy(case):
+    """Return the usual cause of a fixed step that fails, what to do, and the command for it."""
+    return (
+        "the fixed step is too long for this stiffness: halve time.step, or use integrator: rkc.\n"
+        f"Try: {case.source.command('time.integrator=rkc')}"
+    )
+
+
+def _adaptive_remedy(case):
+    finer = f"time.tolerance={max(0.1 * case.time.tolerance, 1e-13):.3g}"
+    return (
+        "the motion is beyond the resolution of the rods: use more points, or a smaller "
+        f"time.tolerance.\nTry: {case.source.command(finer)}"
+    )
 
 
 @kernel(f"boolean({MAT}, {TRIADS}, {MAT}, float64)")
@@ -32,11 +41,11 @@ def _in_order(X, D, centre, farthest):
 class Watch:
     """Checks that every value is finite, that no rod has left all bounds, and the fastest rate."""
 
-    def __init__(self, system, integrator, radius=None):
+    def __init__(self, case, system, integrator, radius=None):
         """``radius``: the SpectralRadius that follows the rate of a fixed step, or None."""
         self.system = system
         fixed = isinstance(integrator, FixedStep)
-        self.remedy = FIXED_STEP_REMEDY if fixed else ADAPTIVE_REMEDY
+        self.remedy = _fixed_step_remedy(case) if fixed else _adaptive_remedy(case)
         self._rates = RateWatch(system, integrator, radius) if fixed and radius else None
         initial = system.scene.initial.position
         self.centre = initial.mean(axis=1, keepdims=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -71,6 +72,12 @@ class Source:
         path = tuple(int(p) if isinstance(p, str) and p.isdecimal() else p for p in parts)
         value, unit = shown(self.value(path)), self.unit(path)
         return Problem(self.where(path), dotted(path), value, reason, unit)
+
+    def command(self, *changes: str) -> str:
+        """Return the command that runs this case with more ``--set`` changes, for messages."""
+        path = shlex.quote(self.path) if self.text else "CASE.yaml"  # else it has no file
+        sets = [f"--set {shlex.quote(text)}" for text in (*self.overrides, *changes)]
+        return " ".join(["rodsim run", path, *sets])
 
 
 def child(node: Any, part: str | int) -> Any:

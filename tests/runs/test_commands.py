@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import shlex
 import shutil
 import signal
 import subprocess
@@ -12,11 +13,13 @@ import time
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from scenes import CONFIGS
+from scenes import CONFIGS, load
 
 import rodsim
 from rodsim import open_trajectory
 from rodsim.cli import main
+from rodsim.errors import DivergedError, StepFailure
+from rodsim.rods import build_scene
 
 RING = str(CONFIGS / "closed_ring.yaml")
 SHORT = ("--set", "rods.ring.shape.points=40", "--set", "time.end=2e-3")
@@ -174,11 +177,31 @@ def test_a_forced_run_that_diverges_keeps_its_frames_and_says_what_to_do(here):
     assert "rod 'ring', point" in run.stderr
     assert "halve time.step, or use integrator: rkc" in run.stderr
     assert "Traceback" not in run.stderr
+    advice = shlex.split(run.stderr.partition("Try: rodsim ")[2].splitlines()[0])
+    assert advice[:2] == ["run", RING]
     with open_trajectory("out.h5") as trajectory:
         assert trajectory.status == "diverged"
         assert trajectory.frames >= 2
         assert f"Last good frame: {trajectory.frames - 1}" in run.stderr
         assert np.isfinite(trajectory.position).all()
+    assert call(*advice, "-q").exit_code == 0
+
+
+def test_a_run_whose_steps_fail_says_where_and_which_command_may_help():
+    from rodsim.machine import Machine
+
+    case = load("closed_ring", "rods.ring.shape.points=40", "rods.ring.strain_twist=[1.2, 0, 0.5]")
+    machine = Machine(case, build_scene(case), force=False)
+    failure = StepFailure("no step is accepted", machine.system.scene.initial)
+    with pytest.raises(DivergedError) as caught:
+        machine.watch.stop(failure, 8)
+    assert str(caught.value).splitlines() == [
+        "diverged in step 8, after t = 0: no step is accepted.",
+        "Last good frame: 0. Usual cause: the motion is beyond the resolution of the rods:"
+        " use more points, or a smaller time.tolerance.",
+        f"Try: rodsim run {RING} --set rods.ring.shape.points=40"
+        " --set 'rods.ring.strain_twist=[1.2, 0, 0.5]' --set time.tolerance=1e-05",
+    ]
 
 
 def test_frames_are_at_their_exact_times(here):

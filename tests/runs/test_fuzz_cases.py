@@ -49,7 +49,7 @@ def one_step(case):
         if not np.isfinite(step.end.position).all():
             assert case.time.step is not None  # an adaptive step that is accepted is a good one
             return "a step too long"
-        Watch(system, integrator)
+        Watch(case, system, integrator)
         for values in system.observe(step.end)[0].values():
             assert values.shape[0] == 3
     return "made a step"

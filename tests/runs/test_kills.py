@@ -62,8 +62,8 @@ def resumes(path):
         return len(run.resumes)
 
 
-def kill_until_finished(folder, rng, options, whole, kills):
-    """Run and resume, killing at random times, at most so often; return (kills, frames lost).
+def kill_until_finished(folder, rng, options, whole, kills, pace):
+    """Run and resume, killing after ``pace`` seconds on average; return (kills, frames lost).
 
     Frames lost: those that a kill has taken from what the file had. It must be none.
     """
@@ -73,7 +73,7 @@ def kill_until_finished(folder, rng, options, whole, kills):
     while not path.exists() and process.poll() is None:
         time.sleep(0.005)
     while True:
-        limit = rng.expovariate(1 / 0.25) if survived < kills else None
+        limit = rng.expovariate(1 / pace) if survived < kills else None
         while rng.random() < 0.99 and resumes(path) < went_on and process.poll() is None:
             time.sleep(0.02)  # starting Python is seldom what is to be killed
         try:
@@ -93,7 +93,7 @@ def kill_until_finished(folder, rng, options, whole, kills):
             return survived, lost
 
 
-def harness(tmp_path, kills, seed, schemes):
+def harness(tmp_path, kills, seed, schemes, pace=0.25):
     """Kill runs of the schemes in turn, until there were enough kills."""
     rng, total, runs, lost = random.Random(seed), 0, 0, 0
     (tmp_path / "case.yaml").write_text(CASE)
@@ -107,7 +107,7 @@ def harness(tmp_path, kills, seed, schemes):
         folder.mkdir()
         (folder / "case.yaml").write_text(CASE)
         whole = tmp_path / f"{name}.h5"
-        done = kill_until_finished(folder, rng, options[name], whole, kills - total)
+        done = kill_until_finished(folder, rng, options[name], whole, kills - total, pace)
         total, lost, runs = total + done[0], lost + done[1], runs + 1
         assert sorted(os.listdir(folder)) == ["case.yaml", "out.h5"]
         print(f"{total} kills in {runs} runs, {lost} acknowledged frames lost", flush=True)
@@ -115,7 +115,7 @@ def harness(tmp_path, kills, seed, schemes):
 
 
 def test_killed_ten_times(tmp_path):
-    harness(tmp_path, kills=10, seed=5, schemes={"rkc": ()})
+    harness(tmp_path, kills=10, seed=5, schemes={"rkc": ()}, pace=0.06)
 
 
 @pytest.mark.long

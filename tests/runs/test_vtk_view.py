@@ -115,7 +115,7 @@ from outputs import create, frame
 with create(sys.argv[1], times=0.3 * np.arange(3000)) as writer:
     for index in range(3000):
         writer.write_frame(index, 10 * index + 2, *frame(index))
-        writer.checkpoint({"frame": index, "X": frame(index)[0]["position"]})
+        writer.checkpoint({"X": frame(index)[0]["position"], "time": 0.3 * index, "step": index})
         print(index + 1, flush=True)
 """
 
@@ -127,6 +127,7 @@ def test_a_killed_run_is_whole_up_to_its_last_frame(tmp_path, wait):
         process.stdout.readline()
     process.send_signal(signal.SIGKILL)
     rest = process.communicate()[0].split()
+    assert process.returncode == -signal.SIGKILL  # it did not end before, on its own
     written = int(rest[-1]) if rest else wait
     with open_trajectory(path) as run:
         assert run.status == "running"
@@ -136,8 +137,8 @@ def test_a_killed_run_is_whole_up_to_its_last_frame(tmp_path, wait):
                 run.read("position", index), frame(index)[0]["position"].T
             )
         saved = run.checkpoint()
-        assert saved["frame"] in (written - 1, written)
-        np.testing.assert_array_equal(saved["X"], frame(saved["frame"])[0]["position"])
+        assert saved["step"] in (written - 1, written)
+        np.testing.assert_array_equal(saved["X"], frame(saved["step"])[0]["position"])
         committed, times = run.frames, run.time.tolist()
     view_times, frames = read_view_apart(path)
     # The counters of the file and of the view are two writes: a kill can fall between them. The
