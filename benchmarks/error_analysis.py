@@ -180,9 +180,13 @@ def draw(folder, scenes, blobs):
     _lines(left, folder, scenes, blobs, *table)
     left.set(xlabel="epsilon / ds", ylabel="error of the spacing, over the rod's length")
     left.axhline(0.01, c="0.6", lw=1)
+    left.set_ylim(top=0.5)  # room for the legend, which serves both
     table = "epsilon", "epsilon / the case's", "difference / length"
     _lines(right, folder, scenes, blobs, *table)
     right.set(xlabel="epsilon / the case's", ylabel="difference from the case, over the length")
+    right.set_xticks((0.2, 0.5, 1.0, 2.0), ("0.2", "0.5", "1", "2"))
+    right.set_xticks((), minor=True)
+    right.get_legend().remove()
     left, right = time.subplots(1, 2)
     for axis, column in ((left, "evaluations"), (right, "steps")):
         for method, fill in (("rkc", "full"), ("euler", "none")):
@@ -190,7 +194,7 @@ def draw(folder, scenes, blobs):
             _lines(axis, folder, scenes, blobs[:1], *table, method=method, fillstyle=fill)
         axis.set(xlabel=column, ylabel="error in time, over the rod's length")
     for figure, name in ((space, "space"), (time, "time")):
-        figure.savefig(folder / f"error-{name}.png", dpi=110)
+        figure.savefig(folder / f"error-{name}.png", dpi=100)
 
 
 def _lines(axis, folder, scenes, blobs, name, x, y, method=None, **style):
