@@ -35,7 +35,7 @@ class Stopper:
     def __init__(self, max_wall: float | None = None):
         self.deadline = None if max_wall is None else monotonic() + max_wall
         self.reason, self._before = "", {}
-        self._longest, self._last = 0.0, monotonic()
+        self._longest, self._last = 0.0, None
 
     def __enter__(self):
         if threading.current_thread() is threading.main_thread():
@@ -43,7 +43,6 @@ class Stopper:
                 number = getattr(signal, name, None)  # SIGUSR1 is not everywhere
                 if number is not None:
                     self._before[number] = signal.signal(number, self._hear)
-        self._last = monotonic()
         return self
 
     def __exit__(self, *error):
@@ -53,7 +52,9 @@ class Stopper:
     def __call__(self) -> str:
         """Return the reason to stop now, empty if there is none. Call once after each step."""
         now = monotonic()
-        self._longest, self._last = max(self._longest, now - self._last), now
+        if self._last is not None:  # before the first step lies the start: kernels, the file
+            self._longest = max(self._longest, now - self._last)
+        self._last = now
         if not self.reason and self.deadline is not None and now + self._longest > self.deadline:
             self.reason = "the wall time given by --max-wall"
         return self.reason
