@@ -133,13 +133,20 @@ class GuardedFile:
 
     def _dataset(self, name):
         data = self._node(name, h5py.Dataset)
+        try:
+            self._check_storage(name, data)
+        except (OSError, OverflowError, RuntimeError, TypeError, ValueError) as error:
+            raise self.damaged(f"{name} has a type or layout that is none ({error})") from error
+        return data
+
+    def _check_storage(self, name, data):
         if data.external or data.is_virtual:
             raise self.damaged(f"{name} lies outside this file")
         if _foreign_filter(data):
             raise self.damaged(f"{name} is packed in a way that only a plug-in can read")
-        if data.shape is None or data.nbytes > PACKING * data.id.get_storage_size():
+        stored = data.shape is not None and data.dtype.itemsize  # an impossible type fails here
+        if not stored or data.nbytes > PACKING * data.id.get_storage_size():
             raise self.damaged(f"{name} is empty")
-        return data
 
     def _node(self, name, kind=h5py.HLObject):
         """Walk to an object link by link."""

@@ -153,9 +153,18 @@ def huge(file):
     file.create_dataset(POSITION, (10**9, POINTS, 3), "f8", chunks=(1, POINTS, 3))
 
 
+def impossible_integer(file):
+    """An integer of nine bytes, which HDF5 knows and NumPy does not: one flipped bit makes it."""
+    del file["committed"]
+    kind = h5py.h5t.STD_I64LE.copy()
+    kind.set_size(9)
+    h5py.h5d.create(file.id, b"committed", kind, h5py.h5s.create(h5py.h5s.SCALAR))
+
+
 @pytest.mark.parametrize(
     "change",
     [
+        impossible_integer,
         put("committed", 10**12),
         put("committed", -1),
         put("committed", 1.5),
