@@ -12,10 +12,10 @@ import numpy as np
 from rodsim.elasticity import ENERGIES, energies, first_half_turn, point_loads
 from rodsim.fluid import BLOBS, velocity_kernel
 from rodsim.rods.state import Scene, State
-from rodsim.rotations import rotate
+from rodsim.rotations import displace, rotate
 from rodsim.stages import stage_loop, to_increments
 
-NO_STAGES, NOTHING = np.zeros((1, 4)), np.zeros(0)
+NO_STAGES, NOTHING = np.zeros((1, 5)), np.zeros(0)
 
 
 class RodSystem:
@@ -31,6 +31,9 @@ class RodSystem:
         self._work = np.empty((3, n)), np.empty((3, 3, n)), np.empty((3, p)), *np.empty((2, 6, n))
         self._velocity = velocity_kernel(BLOBS[scene.blob], scene.planar)
         self._loop = stage_loop(BLOBS[scene.blob], scene.planar, p > 0)
+        self._fixed = scene.rods.tables, (scene.epsilon, scene.viscosity)
+        driven = scene.strain_twist.driven
+        self._omegas = None if driven else scene.strain_twist.at(np.zeros(1))
         # Error norms measure lengths against the longest rod and angles in radians.
         self.weights = np.ones(self.size)
         self.weights[: 3 * n] = self.weights[6 * n :] = 1.0 / scene.length_scale
@@ -63,31 +66,17 @@ class RodSystem:
     ):
         """Run stages of a recurrence, see :func:`rodsim.stages.stage_loop`, then evaluate.
 
-        ``t``: the times of the evaluations, or one time. Returns how many were made: of a driven
-        scene, as many as there is room for strain twist, the last of them without its stage.
+        The evaluation at Y_j is at time t + c_j h, with c in the last column of ``table``. Returns
+        how many were made: of a driven scene, as many as there is room for strain twist, the last
+        of them without its stage.
         """
-        omegas = self.scene.strain_twist.at(np.atleast_1d(t))
-        if self.scene.strain_twist.driven:
+        omegas = self._omegas
+        if omegas is None:
+            omegas = self.scene.strain_twist.at(t + size * table[begin - 1 :, 4])
             end = begin + len(omegas) - 1
-        scene, Y = self.scene, Y.reshape(-1, self.size)
-        state = base.position, base.director, base.tracer
-        fluid = scene.epsilon, scene.viscosity
+        state, Y = (base.position, base.director, base.tracer), Y.reshape(-1, self.size)
         start = perf_counter()
-        self._loop(
-            scene.rods.tables,
-            fluid,
-            state,
-            self._work,
-            omegas,
-            table,
-            begin,
-            end,
-            size,
-            f0,
-            g,
-            Y,
-            out,
-        )
+        self._loop(*self._fixed, state, self._work, omegas, table, begin, end, size, f0, g, Y, out)
         self.seconds += perf_counter() - start
         self.evaluations += end + 1 - begin
         return end + 1 - begin
@@ -109,10 +98,10 @@ class RodSystem:
 
     def state_at(self, base: State, time: float, y: np.ndarray) -> State:
         """Return the state with increments ``y`` from ``base``."""
-        shift, theta, drift = self.split(y)
-        director = np.empty_like(base.director)
-        rotate(theta, base.director, director)
-        return State(time, base.position + shift, director, base.tracer + drift)
+        begin = base.position, base.director, base.tracer
+        end = tuple(np.empty_like(part) for part in begin)
+        displace(begin, y, end)
+        return State(time, *end)
 
     def diagnose(self, state: State) -> int:
         """Return the first point whose triad is a half-turn from the next one's, or -1."""

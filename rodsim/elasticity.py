@@ -63,7 +63,7 @@ def _half_director(D, k, j, i, c, vx, vy, vz):
 
 
 @inline
-def _segment_loads(X, D, omega, moduli, r, ds, k, j, internal):
+def _segment_loads(X, D, omega, a, b, ds, k, j, internal):
     """Write F and N of the segment from point k to point j, (23)-(27), into ``internal``."""
     trace = _one_plus_trace(D, k, j)
     c = 0.5 * math.sqrt(trace if trace > HALF_TURN else math.nan)
@@ -72,8 +72,8 @@ def _segment_loads(X, D, omega, moduli, r, ds, k, j, internal):
     fx, fy, fz, nx, ny, nz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(3):
         along, hx, hy, hz = _half_director(D, k, j, i, c, vx, vy, vz)
-        moment = moduli[i, r] * (along / (c * ds) - omega[i, k])
-        force = moduli[3 + i, r] * (hx * dx + hy * dy + hz * dz - (i == 2))
+        moment = a[i] * (along / (c * ds) - omega[i, k])
+        force = b[i] * (hx * dx + hy * dy + hz * dz - (i == 2))
         fx += force * hx
         fy += force * hy
         fz += force * hz
@@ -113,11 +113,13 @@ def point_loads(X, D, omega, rods, internal, loads):
     firsts, counts, closed, spacing, moduli = rods
     for r in range(firsts.size):
         first, ds = np.uint64(firsts[r]), spacing[r]
+        a = moduli[0, r], moduli[1, r], moduli[2, r]
+        b = moduli[3, r], moduli[4, r], moduli[5, r]
         last = first + np.uint64(counts[r]) - ONE
         for k in range(first, last):
-            _segment_loads(X, D, omega, moduli, r, ds, k, k + ONE, internal)
+            _segment_loads(X, D, omega, a, b, ds, k, k + ONE, internal)
         if closed[r]:
-            _segment_loads(X, D, omega, moduli, r, ds, last, first, internal)
+            _segment_loads(X, D, omega, a, b, ds, last, first, internal)
         else:
             for c in range(6):
                 internal[c, last] = 0.0

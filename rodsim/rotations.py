@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from rodsim.jit import MAT, TRIADS, inline, kernel
+from rodsim.jit import BASE, MAT, TRIADS, VEC, inline, kernel
 
 SERIES_UP_TO = 1.0  # squared angle: there the next terms of the series are below 1e-19
 
@@ -41,9 +41,8 @@ def _turn(a, b, tx, ty, tz, D, k, out):
         out[i, 2, k] = dz + a * cz + b * (tx * cy - ty * cx)
 
 
-@kernel(f"void({MAT}, {MAT}, {MAT})")
-def add(position, shift, out):
-    """out = position + shift, all (3, N): the translations that go with the rotations below."""
+@inline
+def _add(position, shift, out):
     for c in range(3):
         for k in range(np.uint64(position.shape[1])):
             out[c, k] = position[c, k] + shift[c, k]
@@ -71,6 +70,18 @@ def rotate(theta, D, out):
         angle2 = tx * tx + ty * ty + tz * tz
         a, b = _series(angle2) if angle2 <= SERIES_UP_TO else _closed_form(angle2)
         _turn(a, b, tx, ty, tz, D, k, out)
+
+
+@kernel(f"void({BASE}, {VEC}, {BASE})")
+def displace(base, y, out):
+    """Write the state with increments ``y`` from ``base``: (position, director, tracer) each.
+
+    y: (X - X_n, theta, tracer - tracer_n), flat, 6 N + 3 P long; see :mod:`rodsim.dynamics`.
+    """
+    n, markers = base[0].shape[1], base[2].shape[1]
+    _add(base[0], y[: 3 * n].reshape(3, n), out[0])
+    rotate(y[3 * n : 6 * n].reshape(3, n), base[1], out[1])
+    _add(base[2], y[6 * n :].reshape(3, markers), out[2])
 
 
 def angular_velocity(theta: np.ndarray, rate: np.ndarray) -> np.ndarray:

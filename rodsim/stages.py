@@ -9,7 +9,7 @@ from rodsim.elasticity import point_loads
 from rodsim.fluid.blobs import ALGEBRAIC7
 from rodsim.fluid.sums import FLOW_7, FLOW_9, PLANAR_7, PLANAR_9, SPATIAL_7, SPATIAL_9
 from rodsim.jit import MAT, SYSTEM, TRIADS, VEC, inline, kernel
-from rodsim.rotations import add, rotate, rotation_vector_rate
+from rodsim.rotations import displace, rotation_vector_rate
 
 
 @kernel(f"void({VEC}, {VEC})")
@@ -23,25 +23,36 @@ def to_increments(y, velocities):
 
 
 @inline
+def _first(mu_tilde, f0, g, Y):
+    """Y_1 = h mu~_1 (F_0 + g), after Y_0 = 0."""
+    for i in range(np.uint64(f0.size)):
+        Y[0, i] = 0.0
+        Y[1, i] = mu_tilde * (f0[i] + g[i])
+
+
+@inline
 def _combine(row, size, y, oldest, f, f0, g):
-    """Y_j = mu Y_(j-1) + nu Y_(j-2) + h mu~ (F_(j-1) + g) + h gamma~ F_0, over Y_(j-2)."""
+    """Write Y_j, see below, over Y_(j-2)."""
     mu, nu, mu_tilde, gamma_tilde = row[0], row[1], size * row[2], size * row[3]
     for i in range(np.uint64(y.size)):
-        oldest[i] = mu * y[i] + nu * oldest[i] + mu_tilde * (f[i] + g[i]) + gamma_tilde * f0[i]
+        rates = mu_tilde * (f[i] + g[i]) + gamma_tilde * (f0[i] + g[i])
+        oldest[i] = mu * y[i] + nu * oldest[i] + rates
 
 
 @lru_cache
 def stage_loop(blob: int, planar: bool, tracers: bool):
     """Compile ``run(rods, fluid, base, work, omegas, table, begin, end, size, f0, g, Y, f)``.
 
-    Runs the stages begin <= j < end of a three-term recurrence,
+    Runs the stages begin <= j < end of a three-term recurrence, with g added to all rates F,
 
-        Y_j = mu_j Y_(j-1) + nu_j Y_(j-2) + h (mu~_j (F_(j-1) + g) + gamma~_j F_0),
+        Y_0 = 0,    Y_1 = h mu~_1 (F_0 + g),
+        Y_j = mu_j Y_(j-1) + nu_j Y_(j-2) + h (mu~_j (F_(j-1) + g) + gamma~_j (F_0 + g)),
 
     with Y_j in row j % 2 of Y (2, n) and the four coefficients in row j of ``table``; then writes
-    the velocities (u, w, u at the tracers) at Y_(end-1) into ``f``. Increments are those from the
-    state ``base`` = (position, director, tracer), so that Y_0 = 0. fluid: epsilon, viscosity;
-    omegas: the strain twist of these evaluations in turn, or one that stands for all.
+    the velocities (u, w, u at the tracers) at Y_(end-1) into ``f``. With begin = 2 it makes Y_0
+    and Y_1 first; with begin = end = 1 it evaluates at row 0 as it is. Increments are those from
+    the state ``base`` = (position, director, tracer). fluid: epsilon, viscosity; omegas: the
+    strain twist of these evaluations in turn, or one that stands for all.
     """
     # A loop read from the cache is linked at once, and its sums need the threading layer there.
     # Numba sees to that for the sums themselves, not always for what calls them.
@@ -54,10 +65,11 @@ def stage_loop(blob: int, planar: bool, tracers: bool):
         epsilon, viscosity = fluid
         n = position.shape[1]
         u = f[: 6 * n].reshape(6, n)
+        if begin == 2:
+            _first(size * table[1, 2], f0, g, Y)
         for j in range(begin, end + 1):
             y = Y[(j - 1) % 2]
-            add(base[0], y[: 3 * n].reshape(3, n), position)
-            rotate(y[3 * n : 6 * n].reshape(3, n), base[1], director)
+            displace(base, y, (position, director, tracer))
             omega = omegas[j - begin if omegas.shape[0] > 1 else 0]
             point_loads(position, director, omega, rods, internal, loads)
             if planar:
@@ -72,7 +84,6 @@ def stage_loop(blob: int, planar: bool, tracers: bool):
             if tracers:
                 markers = tracer.shape[1]
                 flow = f[6 * n :].reshape(3, markers)
-                add(base[2], y[6 * n :].reshape(3, markers), tracer)
                 if seven:
                     FLOW_7(tracer, position, loads, epsilon, viscosity, flow)
                 else:

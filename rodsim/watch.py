@@ -1,5 +1,7 @@
 """Is the run still meaningful? Checked after every step; a run that is not stops by name."""
 
+import math
+
 import numpy as np
 
 from rodsim.errors import DivergedError, StepFailure
@@ -35,7 +37,10 @@ def _in_order(X, D, centre, farthest):
         for k in range(np.uint64(X.shape[1])):
             if not abs(X[c, k] - centre[c, 0]) <= farthest:
                 return False
-    return np.isfinite(D).all()
+            for i in range(3):
+                if not math.isfinite(D[i, c, k]):
+                    return False
+    return True
 
 
 class Watch:

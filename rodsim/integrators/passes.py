@@ -29,3 +29,23 @@ def defect(size, c, memory, y, f0, f1, g, weights, third):
     for i in range(np.uint64(weights.size)):
         total += (weights[i] * (c * h3 * third[i] - size * g[i])) ** 2
     return math.sqrt(total / weights.size)
+
+
+@kernel(f"void(float64, {VEC}, {VEC}, {VEC})")
+def probe(size, direction, weights, y):
+    """y = size direction/weights, in the first ``weights.size`` numbers."""
+    for i in range(np.uint64(weights.size)):
+        y[i] = size * direction[i] / weights[i]
+
+
+@kernel(f"float64(float64, {VEC}, {VEC}, {VEC}, {VEC})")
+def image(size, shifted, rate, weights, out):
+    """out = weights (shifted - rate)/size, over its own norm; return that norm."""
+    total = 0.0
+    for i in range(np.uint64(weights.size)):
+        out[i] = weights[i] * (shifted[i] - rate[i]) / size
+        total += out[i] * out[i]
+    norm = math.sqrt(total)
+    for i in range(np.uint64(weights.size)):
+        out[i] /= norm
+    return norm

@@ -148,7 +148,8 @@ class RKC:
         self.max_stages = max(self.max_stages, s)
         table, c, n = coefficients(s), error_constant(s), self.system.rod_size
         g = self._defect.correction(size, c)
-        y, velocities = self._run_stages(state, table, size, f0, g)
+        shift = self.system.zeros() if g is None else g
+        y, velocities = self._run_stages(state, table, size, f0, shift)
         f1 = velocities.copy()
         to_increments(y[:n], f1[:n])
         return y, f1, velocities, self._error(size, c, y, f0, f1, g)
@@ -156,14 +157,11 @@ class RKC:
     def _run_stages(self, state, table, size, f0, g):
         """Return the increment of a step, g added to all rates, and the velocities at its end."""
         system, s = self.system, len(table) - 1
-        Y, f = np.zeros((2, system.size)), system.zeros()
-        shift = system.zeros() if g is None else g
-        start = f0 + shift
-        Y[1] = size * table[1, 2] * start
-        times, begin = state.time + size * table[1:, 4], 2
+        Y, f = np.empty((2, system.size)), np.empty(system.size)
+        begin = 2
         while begin <= s:  # more than once only where the strain twist comes in blocks
-            args = table, begin, s + 1, size, start, shift
-            begin += system.run_stages(times[begin - 2 :], state, Y, f, *args) - 1
+            args = table, begin, s + 1, size, f0, g
+            begin += system.run_stages(state.time, state, Y, f, *args) - 1
         return Y[s % 2], f
 
     def _accepted(self, state, f0, end):

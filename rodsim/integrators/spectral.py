@@ -3,6 +3,7 @@
 import numpy as np
 
 from rodsim.dynamics import RodSystem
+from rodsim.integrators.passes import image, probe
 from rodsim.rods.state import State
 
 
@@ -41,21 +42,18 @@ class SpectralRadius:
         fewest = self.FEWEST_AT_FIRST if self.vector is None else 1
         if tolerance is None:
             tolerance = self.FIRST_TOLERANCE if self.vector is None else self.TOLERANCE
-        scale = 1.0 / system.weights
-        vector = self._start() if self.vector is None else self.vector
-        probe, shifted = system.zeros(), system.zeros()
-        size, rho = 1e-6, 0.0
+        vector = self._start() if self.vector is None else self.vector.copy()
+        weights, size, rho = system.weights[:n], 1e-6, 0.0
+        y, shifted = system.zeros(), system.zeros()
         for iteration in range(self.MOST):
-            probe[:n] = size * scale[:n] * vector
-            system.rate(state.time, state, probe, shifted)
-            image = (shifted[:n] - rate[:n]) * system.weights[:n] / size
-            before, rho = rho, float(np.linalg.norm(image) / np.linalg.norm(vector))
+            probe(size, vector, weights, y)
+            system.rate(state.time, state, y, shifted)
+            before, rho = rho, image(size, shifted, rate, weights, vector)
             if not (np.isfinite(rho) and rho > 0.0):
                 break
-            vector = image / np.linalg.norm(image)
             if iteration >= fewest and abs(rho - before) <= tolerance * rho:
                 break
-        self.vector = vector if np.isfinite(rho) else None
+        self.vector = vector if np.isfinite(rho) and rho > 0.0 else None
         return rho
 
     def _start(self):
