@@ -21,7 +21,7 @@ import math
 
 import numpy as np
 
-from rodsim.jit import MAT, ONE, RODS, TRIADS, VEC, inline, kernel
+from rodsim.jit import MAT, ONE, RODS, TRIADS, VEC, inline, kernel, part
 from rodsim.rods.state import HALF_TURN
 
 ENERGIES = ("bending_energy", "twisting_energy", "shear_energy", "stretch_energy")
@@ -129,7 +129,7 @@ def point_loads(X, D, omega, rods, internal, loads):
         _balance(X, internal, loads, last, last - ONE, first)
 
 
-@kernel(f"void({MAT}, {TRIADS}, int64, int64, float64, {VEC}, {MAT})")
+@part
 def segment_strain(X, D, k, j, ds, strain, half):
     """Strains of the segment from point k to point j, and the triad of its half point.
 
@@ -174,7 +174,7 @@ def energies(X, D, omega, rods, out, length):
             )
 
 
-@kernel(f"int64({TRIADS}, {RODS})")
+@part
 def first_half_turn(D, rods):
     """Return the first point whose triad is a half-turn away from the next one's, or -1."""
     first, count, closed, _, _ = rods

@@ -3,8 +3,9 @@
 ``reassoc`` is what lets LLVM vectorise a sum; ``nnan`` and ``ninf`` are left out on purpose, so a
 NaN or an infinity in a state always shows. ``error_model="numpy"``: a checked division would stop
 vectorisation. Kernels have signatures, so each is compiled (or read from the cache) once, when its
-module is imported, and never again for another array layout; but for the sums, which have none, so
-that only those are compiled that a scene calls.
+module is imported, and never again for another array layout. Parts have none: they are compiled
+with the kernels that call them, and cost a run nothing to load. Nor have the sums, so that only
+those are compiled that a scene calls.
 
 Loops over points use unsigned indices (``ONE`` and ``np.uint64``): for signed ones Numba adds the
 wrap-around of negative indices to each access, and LLVM then gives up vectorising.
@@ -41,4 +42,5 @@ SUM_FLAGS = {"reassoc", "contract", "arcp", "nsz"}
 
 kernel = partial(njit, cache=True, error_model="numpy")
 parallel_kernel = partial(njit, cache=True, error_model="numpy", parallel=True, fastmath=SUM_FLAGS)
+part = partial(njit, cache=True, error_model="numpy")
 inline = partial(njit, cache=True, error_model="numpy", inline="always")

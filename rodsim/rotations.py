@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from rodsim.jit import BASE, MAT, TRIADS, VEC, inline, kernel
+from rodsim.jit import BASE, VEC, inline, kernel, part
 
 SERIES_UP_TO = 1.0  # squared angle: there the next terms of the series are below 1e-19
 
@@ -48,7 +48,7 @@ def _add(position, shift, out):
             out[c, k] = position[c, k] + shift[c, k]
 
 
-@kernel(f"void({MAT}, {TRIADS}, {TRIADS})")
+@part
 def rotate(theta, D, out):
     """out = exp(theta x) D: Rodrigues' formula (36), the identity where theta = 0.
 
@@ -100,7 +100,7 @@ def angular_velocity(theta: np.ndarray, rate: np.ndarray) -> np.ndarray:
     return rate + first * turned + second * np.cross(theta, turned, axis=0)
 
 
-@kernel(f"void({MAT}, {MAT})")
+@part
 def rotation_vector_rate(theta, w):
     """Replace the angular velocity w by d theta/dt = w - 1/2 theta x w + 1/12 theta x (theta x w).
 
