@@ -59,7 +59,7 @@ _ODD_CHARACTER_HINTS = {
     '"': "text in quotes is not allowed",
 }
 
-Function = Callable[[np.ndarray, np.float64], np.ndarray]
+Function = Callable[[np.ndarray, np.ndarray], np.ndarray]
 Node = np.float64 | Function  # constants are folded: parameters cost nothing later
 
 
@@ -70,8 +70,9 @@ class ExpressionError(ValueError):
 class Expression:
     """A function of arc length s and time t, with the parameters bound to their values.
 
-    Calling it as ``expression(s, t)`` returns a float64 array of the shape of ``s``; overflow and
-    invalid operations give inf and nan without a warning. Raises ExpressionError on construction.
+    Calling it as ``expression(s, t)`` returns a float64 array of the shape that ``s`` and ``t``
+    broadcast to; overflow and invalid operations give inf and nan without a warning. Raises
+    ExpressionError on construction.
     """
 
     def __init__(self, text: str, parameters: Mapping[str, float] | None = None):
@@ -83,12 +84,12 @@ class Expression:
         self.uses_s = "s" in builder.used
         self.uses_t = "t" in builder.used
 
-    def __call__(self, s: np.ndarray, t: float) -> np.ndarray:
-        """Return the values at arc lengths ``s`` (any shape) and time ``t``."""
-        s = np.asarray(s, dtype=np.float64)
-        result = np.empty(s.shape)
+    def __call__(self, s: np.ndarray, t: np.ndarray | float) -> np.ndarray:
+        """Return the values at arc lengths ``s`` and times ``t``."""
+        s, t = np.asarray(s, dtype=np.float64), np.asarray(t, dtype=np.float64)
+        result = np.empty(np.broadcast_shapes(s.shape, t.shape))
         with np.errstate(all="ignore"):
-            result[...] = _value(self._function, s, np.float64(t))
+            result[...] = _value(self._function, s, t)
         return result
 
     def __eq__(self, other: object) -> bool:

@@ -64,6 +64,7 @@ def flow(output, at, grid_text, resolution, path, colour, arrows, tracers, until
 
     default = output.with_name(f"{output.stem}_{'tracers' if tracers else 'flow'}.png")
     path = written_path(path or default, (*STILLS, *(TRACERS if tracers else FLOW)))
+    _refuse_unused(tracers, {"--arrows": arrows, "--raw": raw}, {"--until": until is not None})
     there = path.exists()
     prepare_numba()
     from rodsim.output import open_trajectory
@@ -75,6 +76,15 @@ def flow(output, at, grid_text, resolution, path, colour, arrows, tracers, until
         else:
             _flow(run, at, grid_text, resolution, path, colour, arrows, raw, quiet)
     say_written(path, there, quiet)
+
+
+def _refuse_unused(tracers, for_flow, for_tracers):
+    """Raise UsageError for an option that would change nothing."""
+    for option, given in (for_flow if tracers else for_tracers).items():
+        if given:
+            from rodsim.errors import UsageError
+
+            raise UsageError(f"{option} is {'not for' if tracers else 'only for'} --tracers")
 
 
 def _flow(run, at, grid_text, resolution, path, colour, arrows, raw, quiet):

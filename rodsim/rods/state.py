@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
-TRAVEL_SAMPLES = 6
+TRAVEL_TIMES = np.append((np.arange(6) / 6) ** 2, 1.0)  # of a step
+TRAVEL_SEGMENTS = 100  # of a rod, evenly spread, that are looked at
 LARGEST_BLOCK = 1_000_000  # numbers of strain twist evaluated ahead
 HALF_TURN = 4e-14  # 1 + tr A of neighbouring triads below this has lost every digit
 
@@ -94,53 +94,75 @@ class StrainTwist:
 
     def __init__(self, rods: Rods, entries):
         """``entries``: for each rod three numbers or expressions, callable as f(s, t)."""
-        self._values = np.zeros((3, rods.points))
-        self._driven = []
-        for r, triple in enumerate(entries):
-            nodes = slice(int(rods.first[r]), int(rods.first[r] + rods.segments[r]))
-            s = (np.arange(rods.segments[r]) + 0.5) * rods.spacing[r]
-            for i, entry in enumerate(triple):
-                if not callable(entry):
-                    self._values[i, nodes] = entry
-                elif entry.uses_t:
-                    self._driven.append((entry, s, self._values[i, nodes]))
-                else:
-                    self._values[i, nodes] = entry(s, 0.0)
+        self._all = _Table(rods, entries, np.ones_like(rods.count))
+        self._some = _Table(rods, entries, -(-rods.count // TRAVEL_SEGMENTS))
 
     @property
     def driven(self) -> bool:
         """True if any entry depends on time."""
-        return bool(self._driven)
+        return bool(self._all.driven)
+
+    def __call__(self, t: float) -> np.ndarray:
+        """Return Omega (3, N), 1/length, at time t."""
+        return self.at(np.array([t]))[0]
 
     def at(self, times: np.ndarray) -> np.ndarray:
         """Return Omega (T, 3, N) at the first T of several times; T = 1, for all, if not driven.
 
         T is cut where the array would be large: a long step of a large scene takes several calls.
         """
-        if not self.driven:
-            return self._values[None]
-        most = max(2, LARGEST_BLOCK // self._values.size)
-        return np.array([self(t).copy() for t in times[:most]])
+        steady = self._all.values
+        most = max(2, LARGEST_BLOCK // steady.size)
+        return self._all.at(times[:most]) if self.driven else steady[None]
 
     def travel(self, t: float, size: float) -> float:
         """Return how far Omega goes from t to t + size, over its own largest size; 0 if not driven.
 
         The sum of |Omega(t_j+1) - Omega(t_j)| over some times, less its largest term, over the
-        largest |Omega(t_j)|, with |.| the root mean square over the segments: 0.7 sigma size for a
-        short stretch of a wave of angular frequency sigma. The largest term is left out because
-        a jump stays a jump however short the step; the times are not evenly spaced, so that a wave
-        cannot look as if it stood still.
+        largest |Omega(t_j)|, with |.| the root mean square over up to 100 segments of each rod:
+        0.7 sigma size for a short stretch of a wave of angular frequency sigma. The largest term is
+        left out because a jump stays a jump however short the step; the times are not evenly
+        spaced, so that a wave cannot look as if it stood still.
         """
         if not self.driven:
             return 0.0
-        values = [self(t + size * (j / TRAVEL_SAMPLES) ** 2).copy() for j in range(TRAVEL_SAMPLES)]
-        values.append(self(t + size))
-        gaps = [np.linalg.norm(b - a) for a, b in pairwise(values)]
-        largest = max(np.linalg.norm(value) for value in values)
-        return float((sum(gaps) - max(gaps)) / largest) if largest > 0.0 else 0.0
+        values = self._some.at(t + size * TRAVEL_TIMES).reshape(len(TRAVEL_TIMES), -1)
+        gaps = _row_norms(values[1:] - values[:-1])
+        largest = _row_norms(values).max()
+        return float((gaps.sum() - gaps.max()) / largest) if largest > 0.0 else 0.0
 
-    def __call__(self, t: float) -> np.ndarray:
-        """Return Omega (3, N), 1/length, at time t; valid until the next call."""
-        for expression, s, view in self._driven:
-            view[:] = expression(s, t)
-        return self._values
+
+def _row_norms(values):
+    return np.sqrt(np.einsum("ij,ij->i", values, values))
+
+
+class _Table:
+    """Strain twist (3, n) at every ``strides[r]``-th segment of rod r, one rod after another.
+
+    ``values``: all that does not depend on time; ``driven``: (expression, s, row, columns) of all
+    that does. The segment that an open rod does not have stays 0.
+    """
+
+    def __init__(self, rods, entries, strides):
+        ends = np.cumsum(-(-rods.count // strides))
+        self.values, self.driven, begin = np.zeros((3, ends[-1])), [], 0
+        for r, triple in enumerate(entries):
+            s = (np.arange(rods.segments[r]) + 0.5) * rods.spacing[r]
+            s = s[strides[r] // 2 :: strides[r]]
+            columns = slice(begin, begin + len(s))
+            for row, entry in enumerate(triple):
+                if not callable(entry):
+                    self.values[row, columns] = entry
+                elif entry.uses_t:
+                    self.driven.append((entry, s, row, columns))
+                else:
+                    self.values[row, columns] = entry(s, 0.0)
+            begin = int(ends[r])
+
+    def at(self, times):
+        """Return the strain twist (T, 3, n) at several times."""
+        omegas = np.empty((len(times), *self.values.shape))
+        omegas[:] = self.values
+        for expression, s, row, columns in self.driven:
+            omegas[:, row, columns] = expression(s, times[:, None])
+        return omegas

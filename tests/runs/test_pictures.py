@@ -173,6 +173,8 @@ def test_a_replaced_picture_is_said(here, tmp_path):
         (("flow", "-o", "a.png", "--grid", "disc"), 2, "write plane, plane:yz"),
         (("flow", "-o", "a.vtkhdf"), 2, "must end in one of .png .pdf .svg .vti .csv .npz"),
         (("flow", "-o", "a.csv", "--tracers", "--at", "2e-3"), 2, "--until"),
+        (("flow", "-o", "a.csv", "--tracers", "--raw"), 2, "--raw is not for --tracers"),
+        (("flow", "-o", "a.csv", "--until", "1e-3"), 2, "--until is only for --tracers"),
     ],
 )
 def test_what_cannot_be_drawn_is_said_in_one_line(arguments, code, words, here, tmp_path):

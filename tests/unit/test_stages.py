@@ -70,3 +70,13 @@ def test_strain_twist_at_several_times_is_that_of_each():
     s = (np.arange(14) + 0.5) * 2 * np.pi * 2.5 / 14
     assert together[1, 0] == pytest.approx(1.2 * np.cos(0.8 + s), rel=1e-13)
     assert together[2, 2] == pytest.approx(0.12, rel=1e-13)
+
+
+def test_travel_of_a_wave_is_its_phase_less_the_longest_part():
+    """Over parts (2 j + 1)/36 of a step, j = 0 ... 5, with the last left out: 25/36 of the phase."""
+    _, system = system_of("flagellum", "parameters.sigma=300")
+    travel = system.scene.strain_twist.travel
+    for phase in (1e-3, 0.05):  # the chord of an arc is shorter by phase^2/24
+        assert travel(1.7e-3, phase / 300.0) == pytest.approx(25.0 / 36.0 * phase, rel=1e-3)
+    _, steady = system_of(*SCENE)
+    assert steady.scene.strain_twist.travel(1.7e-3, 0.2) == 0.0
