@@ -16,6 +16,7 @@ from pathlib import Path
 from time import perf_counter
 from zlib import crc32
 
+from rodsim.processes import this_rodsim
 from rodsim.settings import fingerprint
 
 LIST = "compiled.json"
@@ -43,7 +44,7 @@ def ensure_compiled(case, say) -> float:
         if not is_compiled(folder, kind):
             if _is_ours(folder, kind) and not _undamaged(folder):
                 _clear(folder)
-            command = [sys.executable, "-m", "rodsim.warmup", *variant]
+            command = [*this_rodsim("rodsim.warmup"), *variant]
             if subprocess.run(command, capture_output=True, check=False).returncode == 0:
                 note_compiled(folder, kind)
     return perf_counter() - start

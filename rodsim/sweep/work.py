@@ -6,10 +6,10 @@ import json
 import os
 import shlex
 import subprocess
-import sys
 from time import monotonic, sleep
 
 from rodsim.errors import FileError, StoppedError
+from rodsim.processes import this_rodsim
 from rodsim.sweep.plan import Run
 
 DONE = ("finished", "diverged")
@@ -38,10 +38,9 @@ def standing(run: Run) -> str:
 
 def command(run: Run, stands: str) -> list[str]:
     """Return the command that does what is left of a run."""
-    rodsim = [sys.executable, "-m", "rodsim"]
     if stands == "stopped":
-        return [*rodsim, "resume", str(run.output)]
-    return [*rodsim, "run", str(run.case), "-o", str(run.output)]
+        return [*this_rodsim(), "resume", str(run.output)]
+    return [*this_rodsim(), "run", str(run.case), "-o", str(run.output)]
 
 
 def work(sweep: str, run: Run, threads: int | None) -> int:

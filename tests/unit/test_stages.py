@@ -73,7 +73,7 @@ def test_strain_twist_at_several_times_is_that_of_each():
 
 
 def test_travel_of_a_wave_is_its_phase_less_the_longest_part():
-    """Over parts (2 j + 1)/36 of a step, j = 0 ... 5, with the last left out: 25/36 of the phase."""
+    """Over parts (2 j + 1)/36 of a step, j = 0 ... 5; the last is left out: 25/36 of the phase."""
     _, system = system_of("flagellum", "parameters.sigma=300")
     travel = system.scene.strain_twist.travel
     for phase in (1e-3, 0.05):  # the chord of an arc is shorter by phase^2/24
