@@ -1,4 +1,5 @@
 import os
+import platform
 import subprocess
 import sys
 from pathlib import Path
@@ -53,3 +54,35 @@ def test_what_the_user_has_set_is_left_alone(name, tmp_path):
         [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
     )
     assert done.stdout.strip() == str(tmp_path)
+
+
+WIDE = """
+import llvmlite.binding as llvm
+class Server(dict):  # what LLVM finds on an Intel server
+    flatten = lambda self: ",".join(f"+{name}" for name in self)
+names = "sse2 sse3 ssse3 sse4.1 sse4.2 avx avx2 fma avx512f avx512dq avx512vl avx512bw popcnt"
+llvm.get_host_cpu_features = lambda: Server.fromkeys(names.split(), True)
+llvm.get_host_cpu_name = lambda: "icelake-server"
+from rodsim.settings import prepare
+prepare()
+import re
+from numba import types
+from rodsim.fluid.sums import _sum
+plane = types.Array(types.float64, 2, "C")
+kernel = _sum(7, False, True)  # compiled, never run
+kernel.compile((plane, plane, plane, types.float64, types.float64, plane))
+code = "".join(kernel.inspect_asm().values())
+print({bits: len(re.findall(rf"sqrtpd.*%{bits}mm", code)) > 0 for bits in "yz"})
+"""
+
+
+@pytest.mark.compiled
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="vectors of x86")
+def test_the_command_lets_sums_have_vectors_of_512_bits(tmp_path):
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("NUMBA_CPU_")}
+    done = subprocess.run(
+        [sys.executable, "-c", WIDE],
+        env={**environment, "NUMBA_CACHE_DIR": str(tmp_path)},
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert done.stdout.strip() == "{'y': False, 'z': True}"
