@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rodsim.errors import CaseError, StepFailure
+from rodsim.errors import CaseError, StepFailure, UsageError
 from rodsim.integrators import FIXED_STEP
 from rodsim.integrators.rkc import RADIUS_SAFETY, stages_for
 from rodsim.integrators.spectral import SpectralRadius
 
 NEAR = 0.8  # of the limit: from here on a step is warned of
-GROWN = 1.02  # of the limit: beyond this an estimate that is good to 1 % is above it for certain
+GROWN = 1.02  # of the limit: estimates come from below, so beyond this it is above for certain
 
 
 @dataclass(frozen=True)
@@ -26,11 +26,17 @@ def stability(system, radius: SpectralRadius | None = None) -> Limits:
     """Estimate the fastest rate rho of a system in its initial state, and what follows from it.
 
     Forward Euler is stable for h < 2/rho, RK4 for h < 2.785/rho, without a safety factor; the
-    estimate, by power iteration (``radius``, where one is kept), is converged to 1 % or better.
+    estimate, by power iteration (``radius``, where one is kept), comes from below, within some 2 %.
+    Raises UsageError where the rate is no number to compute with.
     """
     state = system.scene.initial
     rate = system.velocities(state.time, state, system.zeros(), system.zeros())
     rho = (radius or SpectralRadius(system)).estimate(state, rate, tolerance=1e-4)
+    if not (np.isfinite(rho) and rho > 0.0 and 1.0 / rho > 0.0):
+        raise UsageError(
+            f"the fastest rate of this scene comes out as {rho:.3g}: its numbers are too large or "
+            "too small to compute with; choose other units"
+        )
     steps = {name: method.stability_limit / rho for name, method in FIXED_STEP.items()}
     sizes = [float(f"{factor / rho:.0e}") for factor in (1e1, 1e2, 1e3, 1e4)]
     return Limits(rho, steps, {h: stages_for(h, RADIUS_SAFETY * rho) for h in sizes})

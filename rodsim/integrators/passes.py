@@ -38,14 +38,8 @@ def probe(size, direction, weights, y):
         y[i] = size * direction[i] / weights[i]
 
 
-@kernel(f"float64(float64, {VEC}, {VEC}, {VEC}, {VEC})")
+@kernel(f"void(float64, {VEC}, {VEC}, {VEC}, {VEC})")
 def image(size, shifted, rate, weights, out):
-    """out = weights (shifted - rate)/size, over its own norm; return that norm."""
-    total = 0.0
+    """out = weights (shifted - rate)/size, in the first ``weights.size`` numbers."""
     for i in range(np.uint64(weights.size)):
         out[i] = weights[i] * (shifted[i] - rate[i]) / size
-        total += out[i] * out[i]
-    norm = math.sqrt(total)
-    for i in range(np.uint64(weights.size)):
-        out[i] /= norm
-    return norm
