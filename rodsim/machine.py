@@ -19,7 +19,7 @@ class Machine:
         self.system = RodSystem(scene)
         radius = SpectralRadius(self.system)  # one estimate serves all who need the fastest rate
         self._radius = radius
-        self.integrator = make_integrator(case.time, self.system, radius)
+        self.integrator = make_integrator(case.time, self.system, radius, case.longest_step)
         self.watch = Watch(case, self.system, self.integrator, None if force else radius)
 
     @cached_property

@@ -19,7 +19,8 @@ from rodsim.case.yaml_text import Path
 
 Finding = tuple[Path, str]
 MOST_FRAMES = 10_000_000
-MOST_SAMPLES = 10_000
+MOST_SAMPLES, SOME = 10_000, 200  # segments looked at
+ALONG_THE_RUN = tuple(np.arange(1, 200) / 200.0)
 WHOLE = 1e-9  # relative; how near a multiple of the step must be
 NO_REST_STATE = 2.0
 COARSE = 1.0
@@ -52,32 +53,54 @@ def check_strain_twist(
 ) -> tuple[list[Finding], list[Finding]]:
     """Return (errors, warnings) of a rod's strain twist; paths start below the rod.
 
-    Taken at the segments' midpoints s = (k + 1/2) ds, at t = 0 and t = end: every entry must be
-    finite there, and abs(Omega) ds <= 2. A discrete strain is 2 sin(theta/2)/ds, theta the angle
-    between neighbouring triads, so no rest state has more.
+    Taken at the segments' midpoints s = (k + 1/2) ds, at t = 0 and t = end, and of a drive at some
+    of them at times between: every entry must be finite there, and abs(Omega) ds <= 2. A discrete
+    strain is 2 sin(theta/2)/ds, theta the angle between neighbouring triads, so no rest state has
+    more.
     """
-    count = min(segments, MOST_SAMPLES)
-    s = (np.floor(np.linspace(0, segments - 1, count)) + 0.5) * ds
-    for t in dict.fromkeys((0.0, end)):
-        omega = [_entry(entry, s, t) for entry in rod.strain_twist]
+    warnings: list[Finding] = []
+    for s, times in _samples(rod, ds, segments, end):
+        omega = [_entry(entry, s, times) for entry in rod.strain_twist]
         for i, values in enumerate(omega):
             if not np.all(np.isfinite(values)):
-                at = s[~np.isfinite(values)][0]
-                return [(("strain_twist", i), f"is not finite at s = {at:.4g}, t = {t:g}")], []
+                at = _where(s, times, np.argmin(np.isfinite(values)))
+                return [(("strain_twist", i), f"is not finite at {at}")], []
         with np.errstate(all="ignore"):
             angle = np.sqrt(sum(values**2 for values in omega)) * ds
-        largest, at = float(np.max(angle)), s[np.argmax(angle)]
-        found = f"abs(Omega) ds = {largest:.4g} at s = {at:.4g}, t = {t:g}"
+        largest, at = float(np.max(angle)), _where(s, times, np.argmax(angle))
+        found = f"abs(Omega) ds = {largest:.4g} at {at}"
         if not largest <= NO_REST_STATE:
             advice = "no rest state (the discrete strain is 2 sin(theta/2)/ds): use a smaller ds"
             return [(("strain_twist",), f"{found}: above {NO_REST_STATE:g} there is {advice}")], []
-        if largest > COARSE:
-            return [], [(("strain_twist",), f"{found}: the rod is coarse: use a smaller ds")]
-    return [], []
+        if largest > COARSE and not warnings:
+            warnings = [(("strain_twist",), f"{found}: the rod is coarse: use a smaller ds")]
+    return [], warnings
 
 
-def _entry(entry: float | Expression, s: np.ndarray, t: float) -> np.ndarray:
-    return entry(s, t) if isinstance(entry, Expression) else np.full(s.shape, entry)
+def _samples(rod: Rod, ds: float, segments: int, end: float) -> Iterator[tuple]:
+    """Yield (s, times) at which the strain twist is looked at."""
+    for most, times in ((MOST_SAMPLES, (0.0,)), (MOST_SAMPLES, (end,)), (SOME, ALONG_THE_RUN)):
+        if times is ALONG_THE_RUN and not _driven(rod):
+            return
+        count = min(segments, most)
+        s = (np.floor(np.linspace(0, segments - 1, count)) + 0.5) * ds
+        yield s, np.array(times) * (end if times is ALONG_THE_RUN else 1.0)
+
+
+def _where(s, times, index):
+    t, k = np.divmod(index, len(s))
+    return f"s = {s[k]:.4g}, t = {times[t]:.4g}"
+
+
+def _entry(entry: float | Expression, s: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """Return the values (T, S) of an entry."""
+    if isinstance(entry, Expression):
+        return entry(s, times[:, None])
+    return np.full((len(times), len(s)), entry)
+
+
+def _driven(rod: Rod) -> bool:
+    return any(isinstance(entry, Expression) and entry.uses_t for entry in rod.strain_twist)
 
 
 def _has_expression(rod: Rod) -> bool:
@@ -95,6 +118,8 @@ def _ignored(time: Time) -> Iterator[Finding]:
         yield ("time", "step"), "ignored: rkc chooses its steps by the tolerance"
     if time.integrator != "rkc" and "tolerance" in time.model_fields_set:
         yield ("time", "tolerance"), f"ignored: {time.integrator} has a fixed step"
+    if time.integrator != "rkc" and time.max_step is not None:
+        yield ("time", "max_step"), f"ignored: {time.integrator} has a fixed step"
 
 
 def _frames(case: Case) -> Iterator[Finding]:

@@ -17,7 +17,7 @@ from rodsim.case.overrides import apply_overrides
 from rodsim.case.places import Place, named
 from rodsim.case.source import Source
 from rodsim.case.yaml_text import Path, parse
-from rodsim.errors import CaseError, Problem
+from rodsim.errors import CaseError, Problem, UsageError
 
 LARGEST_FILE = 1_000_000  # bytes; a case is a few hundred
 MOST_PROBLEMS = 100
@@ -28,6 +28,8 @@ def load_case(path: str | os.PathLike, overrides: Iterable[str] = ()) -> Case:
 
     Raises CaseError, whose ``problems`` name file:line, key, value and reason of all that is wrong.
     """
+    if isinstance(overrides, str) or not all(isinstance(text, str) for text in overrides):
+        raise UsageError('overrides must be texts in a list, such as ["time.end=0.01"]')
     name = os.fspath(path)
     text = _read(name)
     data, lines = parse(text, lambda line: f"{name}:{line}")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import os
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -112,6 +114,12 @@ class Time(Model):
         lt=1.0,
         description="rkc: bound on the local error of a step, relative to the rod",
     )
+    max_step: Positive | None = quantity(
+        "time",
+        "rkc: longest step, so that none passes over a short event; default: output.interval where "
+        "a strain twist depends on t, else none",
+        default=None,
+    )
     step: Positive | None = quantity("time", "euler, rk4: the step", default=None)
 
 
@@ -183,6 +191,24 @@ class Case(Model):
         if self.time.integrator == "rkc" or self.time.step is None:
             return share
         return max(1.0, float(np.ceil(share / self.time.step * (1.0 - 1e-9)))) * self.time.step
+
+    @property
+    def files(self) -> list[str]:
+        """The files it is read from: the case file and those of shapes."""
+        if not (self.source and self.source.path):
+            return []
+        shapes = [rod.shape.path for rod in self.rods.values() if rod.shape.kind == "file"]
+        folder = os.path.dirname(self.source.path)
+        return [self.source.path, *(os.path.join(folder, path) for path in shapes)]
+
+    @property
+    def longest_step(self) -> float:
+        """Longest step of rkc: over a drive that changes in time, it passes in small parts."""
+        if self.time.max_step is not None:
+            return self.time.max_step
+        entries = (entry for rod in self.rods.values() for entry in rod.strain_twist)
+        driven = any(isinstance(entry, Expression) and entry.uses_t for entry in entries)
+        return self.interval if driven else math.inf
 
     def problem(self, key_path: str | tuple, reason: str) -> Problem:
         """Return a Problem at a key, with its file:line, value and unit, for later checks."""

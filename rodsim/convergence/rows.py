@@ -32,7 +32,9 @@ class Row:
 
 def quiet(case) -> tuple[str, ...]:
     """Return what every run changes: no tracers, which move no rod, and no frames but the end."""
-    return "tracers=null", f"output.interval={case.time.end!r}"
+    longest = case.longest_step
+    kept = (f"time.max_step={longest!r}",) if math.isfinite(longest) else ()
+    return "tracers=null", f"output.interval={case.time.end!r}", *kept
 
 
 def rkc(tolerance: float) -> tuple[str, ...]:

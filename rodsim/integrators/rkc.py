@@ -82,13 +82,21 @@ def error_constant(s: int) -> float:
 class RKC:
     """Adaptive RKC. ``tolerance`` bounds the local error of a step, in the norm of the contract:
     root mean square over all components of the rods, positions relative to the longest rod.
+    ``longest`` : no step is longer than this.
     """
 
     order = 3
 
-    def __init__(self, system: RodSystem, tolerance: float, radius: SpectralRadius | None = None):
+    def __init__(
+        self,
+        system: RodSystem,
+        tolerance: float,
+        radius: SpectralRadius | None = None,
+        longest: float = math.inf,
+    ):
         self.system = system
         self.tolerance = tolerance
+        self.longest = longest
         self.accepted = self.rejected = self.max_stages = 0
         self.spectral_radius = math.nan
         self._radius = radius or SpectralRadius(system)
@@ -167,7 +175,7 @@ class RKC:
     def _accepted(self, state, f0, end):
         """Try sizes until one is accepted; return it with what ``attempt`` made of it."""
         while True:
-            size = self._followed(state.time, self._limited(end - state.time))
+            size = self._followed(state, self._limited(end - state.time), end)
             y, f1, velocities, error = self.attempt(state, f0, size)
             if error <= 1.0:
                 self._grow(size, error)
@@ -204,19 +212,21 @@ class RKC:
 
     def _limited(self, left):
         """Return the size to try: never a sliver before the end, never too many stages."""
-        size = min(self._size, (MOST_STAGES**2 - 1.0) / (1.54 * self.spectral_radius))
-        if size >= 0.9 * left:
+        size = min(self._size, self.longest, (MOST_STAGES**2 - 1.0) / (1.54 * self.spectral_radius))
+        if size >= 0.9 * left and left <= self.longest:
             return left
         return min(size, 0.5 * left)
 
-    def _followed(self, t, size):
+    def _followed(self, state, size, end):
         """Return a size at which a step still follows the drive, whatever the tolerance allows.
 
         A step over whole periods of a wave would see the same rate at both ends and find no error.
         """
         travel = self.system.scene.strain_twist.travel
-        while (far := travel(t, size)) > MOST_TRAVEL:
+        while (far := travel(state.time, size)) > MOST_TRAVEL:
             size *= max(0.1, 0.9 * MOST_TRAVEL / far)
+            if not size > 1e-13 * end:
+                raise StepFailure("the strain twist changes faster than steps can follow", state)
         return size
 
     def _estimate_radius(self, state, f0):

@@ -116,20 +116,22 @@ class StrainTwist:
         return self._all.at(times[:most]) if self.driven else steady[None]
 
     def travel(self, t: float, size: float) -> float:
-        """Return how far Omega goes from t to t + size, over its own largest size; 0 if not driven.
+        """Return how far the drive goes from t to t + size, over its own largest size.
 
-        The sum of |Omega(t_j+1) - Omega(t_j)| over some times, less its largest term, over the
-        largest |Omega(t_j)|, with |.| the root mean square over up to 100 segments of each rod:
-        0.7 sigma size for a short stretch of a wave of angular frequency sigma. The largest term is
-        left out because a jump stays a jump however short the step; the times are not evenly
-        spaced, so that a wave cannot look as if it stood still.
+        Of what is driven of a rod, the sum of |Omega(t_j+1) - Omega(t_j)| over some times, less its
+        largest term, over the largest |Omega(t_j)|, with |.| the root mean square over up to 100
+        segments: 0.7 sigma size for a short stretch of a wave of angular frequency sigma. The
+        largest term is left out because a jump stays a jump however short the step; the times are
+        not evenly spaced, so that a wave cannot look as if it stood still. Of several rods the one
+        that goes farthest counts; 0 if nothing is driven.
         """
-        if not self.driven:
-            return 0.0
-        values = self._some.at(t + size * TRAVEL_TIMES).reshape(len(TRAVEL_TIMES), -1)
-        gaps = _row_norms(values[1:] - values[:-1])
-        largest = _row_norms(values).max()
-        return float((gaps.sum() - gaps.max()) / largest) if largest > 0.0 else 0.0
+        farthest, values = 0.0, self._some.at(t + size * TRAVEL_TIMES) if self.driven else None
+        for rows, columns in self._some.drives:
+            drive = values[:, rows, columns].reshape(len(TRAVEL_TIMES), -1)
+            gaps, largest = _row_norms(drive[1:] - drive[:-1]), _row_norms(drive).max()
+            if largest > 0.0:
+                farthest = max(farthest, float((gaps.sum() - gaps.max()) / largest))
+        return farthest
 
 
 def _row_norms(values):
@@ -140,12 +142,14 @@ class _Table:
     """Strain twist (3, n) at every ``strides[r]``-th segment of rod r, one rod after another.
 
     ``values``: all that does not depend on time; ``driven``: (expression, s, row, columns) of all
-    that does. The segment that an open rod does not have stays 0.
+    that does; ``drives``: (rows, columns) of it, by rod. The segment that an open rod does not have
+    stays 0.
     """
 
     def __init__(self, rods, entries, strides):
         ends = np.cumsum(-(-rods.count // strides))
-        self.values, self.driven, begin = np.zeros((3, ends[-1])), [], 0
+        self.values, self.driven, self.drives = np.zeros((3, ends[-1])), [], []
+        begin = 0
         for r, triple in enumerate(entries):
             s = (np.arange(rods.segments[r]) + 0.5) * rods.spacing[r]
             s = s[strides[r] // 2 :: strides[r]]
@@ -157,6 +161,9 @@ class _Table:
                     self.driven.append((entry, s, row, columns))
                 else:
                     self.values[row, columns] = entry(s, 0.0)
+            rows = [row for row, entry in enumerate(triple) if getattr(entry, "uses_t", False)]
+            if rows:
+                self.drives.append((rows, columns))
             begin = int(ends[r])
 
     def at(self, times):

@@ -8,8 +8,8 @@ from rodsim.integrators.rkc import RKC, coefficients
 from rodsim.rods import state as state_module
 
 DRIVEN = "rods.ring.strain_twist=['1.2*cos(40000*t + s)', 0, '0.3*t*1e4']"
-SCENE = ("closed_ring_low_twist", "rods.ring.shape.points=14", "tracers.inner.along=4",
-         "tracers.outer.along=2", "tracers.outer.around=3")  # fmt: skip
+SCENE = ("closed_ring_low_twist", "rods.ring.shape.points=14", "time.end=1e-4",
+         "tracers.inner.along=4", "tracers.outer.along=2", "tracers.outer.around=3")  # fmt: skip
 SIZE, STAGES = 3e-5, 7
 
 
