@@ -5,6 +5,8 @@ Results go to stdout, everything else to stderr. Nothing heavy is imported up he
 
 from __future__ import annotations
 
+import errno
+import os
 import sys
 from importlib import import_module
 
@@ -27,6 +29,7 @@ COMMANDS = (  # as the help lists them
     "export",
     "schema",
 )
+DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # full, or gone
 EXIT_CODES = """\b
 Exit codes:
    0  done
@@ -61,6 +64,11 @@ class _Group(click.Group):
         except BrokenPipeError:
             sys.stderr.close()  # whoever read our output has gone; nothing is left to say
             ctx.exit(0)
+        except OSError as error:
+            if error.errno not in DISK:
+                raise
+            click.echo(f"the result could not be written: {error.strerror}", err=True)
+            os._exit(4)  # what is left of it would fail again at the end of the process
 
 
 @click.group(

@@ -20,9 +20,11 @@ def replacing(path):
     """Give a name beside ``path`` to write to; in the end that file takes its place, whole.
 
     Where the block fails or is interrupted, nothing of it is left and what was there stays.
-    Raises FileError where that is impossible.
+    Raises FileError where that is impossible, and rather than replace the output of a run.
     """
     path = Path(path)
+    if _is_output(path):
+        raise FileError(f"{path}: is the output of a run, not replaced; give another name")
     temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
     try:
         yield temporary
@@ -31,3 +33,15 @@ def replacing(path):
         raise FileError(f"{path}: cannot be written: {error.strerror or error}") from error
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def _is_output(path):
+    try:
+        if not has_hdf5_signature(path):
+            return False
+        import h5py
+
+        with h5py.File(path, "r", locking=False) as file:
+            return "committed" in file and "case" in file
+    except (OSError, RuntimeError):
+        return False

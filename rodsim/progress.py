@@ -50,17 +50,18 @@ class Lines(Silent):
     """A line every few seconds, for logs and job schedulers."""
 
     def __init__(self, label):
-        self._label, self._start = label, None
+        self._label, self._start, self._first = label, None, 0.0
 
     def update(self, fraction, note=""):
         """Print a line if the last one is long enough ago."""
         now = monotonic()
         if self._start is None:
             self._start, self._next = now, now + SECONDS_BETWEEN_LINES
-        if now < self._next or fraction <= 0.0:
+            self._first = fraction  # not 0 in a run that goes on
+        if now < self._next or fraction <= self._first:
             return
         self._next = now + SECONDS_BETWEEN_LINES
-        left = (now - self._start) * (1.0 / fraction - 1.0)
+        left = (now - self._start) * (1.0 - fraction) / (fraction - self._first)
         click.echo(f"{self._label}: {fraction:6.1%} {note}, {left:.0f} s left", err=True)
 
 

@@ -5,7 +5,9 @@ from time import perf_counter
 
 import numpy as np
 
+from rodsim.errors import StepFailure
 from rodsim.output import CaseText, Plan, RodRecord
+from rodsim.output.writer import NotFinite
 
 SECONDS_BETWEEN_CHECKPOINTS = 60.0  # at most, if no frame comes
 SECONDS_BETWEEN_SYNCS = 10.0  # at least: waiting for the disk at every frame would cost too much
@@ -73,14 +75,21 @@ class Recorder:
     def passed(self, step) -> int:
         """Write the frames that lie in a step, each at its exact time; return how many."""
         times, before, last = self.writer.times, self.next_frame, step.end.time
-        while self.next_frame < len(times) and times[self.next_frame] <= last * (1.0 + 1e-12):
+        # A fixed step ends at its frames, but for what its multiples may differ from them.
+        reach = last + (0.5 * step.size if step.rates is None else 1e-12 * last)
+        while self.next_frame < len(times) and times[self.next_frame] <= reach:
             time = min(times[self.next_frame], last)
             self._write(step.number, step.at(time), step.velocities_at(time))
         return self.next_frame - before
 
     def _write(self, number, state, rates=None):
         begin = perf_counter()
-        self.writer.write_frame(self.next_frame, number, *self.system.observe(state, rates))
+        try:
+            self.writer.write_frame(self.next_frame, number, *self.system.observe(state, rates))
+        except NotFinite as error:
+            given = np.isfinite(self.system.scene.strain_twist(state.time)).all()
+            what = error.name if given else "the strain twist"
+            raise StepFailure(f"{what} is not finite at t = {state.time:.6g}", state) from None
         self.next_frame += 1
         self.output_seconds += perf_counter() - begin
 

@@ -7,10 +7,13 @@ from rodsim.recorder import frame_times
 from rodsim.rods import build_scene
 
 
-def describe_case(case) -> str:
-    """Return the resolved scene, its fastest rate, and the stable step of every integrator."""
+def describe_case(case, refuse=False) -> str:
+    """Return the resolved scene, its fastest rate, and the stable step of every integrator.
+
+    ``refuse`` : raise CaseError for what a run would refuse, a fixed step above its limit.
+    """
     from rodsim.dynamics import RodSystem
-    from rodsim.integrators.limits import stability
+    from rodsim.integrators.limits import check_step, stability
 
     scene = build_scene(case)
     unit = case.units
@@ -31,10 +34,14 @@ def describe_case(case) -> str:
     for name, count in scene.tracer_groups.items():
         lines.append(f"tracers {name}: {count} markers")
     time = case.time
-    how = f"step {time.step:g}" if time.step else f"tolerance {time.tolerance:g}"
+    adaptive = time.integrator == "rkc"
+    how = f"tolerance {time.tolerance:g}" if adaptive else f"step {time.step:g}"
     frames = len(frame_times(time.end, case.interval))
     lines.append(f"time: to {time.end:g} {unit.time} by {time.integrator}, {how}; {frames} frames")
-    return "\n".join([*lines, *describe_limits(stability(RodSystem(scene)), unit.time)])
+    limits = stability(RodSystem(scene))
+    if refuse:
+        lines += [f"warning: {problem}" for problem in check_step(case, limits)]
+    return "\n".join([*lines, *describe_limits(limits, unit.time)])
 
 
 def describe_limits(limits, time_unit: str) -> list[str]:

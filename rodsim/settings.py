@@ -1,9 +1,11 @@
 """Numba's settings for the command. Importing the library never comes here."""
 
+import atexit
 import ctypes
 import hashlib
 import os
 import platform
+import shutil
 import sys
 import tempfile
 from importlib.metadata import version
@@ -84,7 +86,9 @@ def _writable(folder):
         with tempfile.TemporaryFile(dir=folder):
             return folder
     except OSError:
-        return tempfile.mkdtemp(prefix="rodsim-")
+        own = tempfile.mkdtemp(prefix="rodsim-")
+        atexit.register(shutil.rmtree, own, ignore_errors=True)
+        return own
 
 
 def load_tbb() -> bool:

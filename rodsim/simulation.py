@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from dataclasses import dataclass, field
 from time import perf_counter
 
+from rodsim.case import Case
 from rodsim.continuation import open_past
-from rodsim.errors import DivergedError, StepFailure, StoppedError
+from rodsim.errors import DivergedError, FileError, StepFailure, StoppedError, UsageError
 from rodsim.output import TrajectoryWriter
 from rodsim.progress import Silent
 from rodsim.recorder import Recorder, plan_output
@@ -49,7 +51,7 @@ def simulate(
     case : what :func:`rodsim.load_case` returns.
     output : path of the file. One that exists is renamed to the next free ``name.1.h5`` and so
         on (``Summary.moved``), unless ``overwrite``.
-    threads : number of threads, or None for as many as the scene is worth.
+    threads : number of threads, at least 1, or None for as many as the scene is worth.
     force : run also with a fixed step above its limit of stability.
     stop : called after each step; returns why the run is to stop there, or an empty text.
     progress : object with ``update(fraction, note)``, or None for none.
@@ -64,8 +66,11 @@ def simulate(
     DivergedError : the run stopped; the frames before that are in the file, its status is set.
     StoppedError : ``stop`` gave a reason; :func:`resume` goes on from there.
     """
+    if not isinstance(case, Case):
+        raise UsageError("simulate takes a case: rodsim.load_case(path)")
     summary = summary or Summary()
     started = perf_counter() - summary.compile_seconds
+    _refuse_sources(case, output)
     scene = build_scene(case)
     machine, compile_seconds = _compile(case, scene, force)
     with machine.threads(threads):
@@ -115,6 +120,13 @@ def resume(
     return summary
 
 
+def _refuse_sources(case, output):
+    """Raise FileError rather than write over what the case is read from."""
+    for source in case.files:
+        if os.path.exists(output) and os.path.exists(source) and os.path.samefile(output, source):
+            raise FileError(f"{output}: the case is read from it; give another output")
+
+
 def _compile(case, scene, force):
     """Import what is compiled only now: who does not run, does not wait for it."""
     begin = perf_counter()
@@ -140,9 +152,9 @@ def _record(machine, state, recorder, stop, progress, summary):
 def _march(machine, state, recorder, stop, progress):
     """Step from ``state`` to the end of the case: a first frame, or one after a checkpoint."""
     integrator, watch, end = machine.integrator, machine.watch, machine.case.time.end
-    if recorder.next_frame == 0:
-        recorder.initial(state)
     try:
+        if recorder.next_frame == 0:
+            recorder.initial(state)
         for step in integrator.steps(state, end):
             watch.check(step)
             new = recorder.passed(step)

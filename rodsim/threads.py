@@ -4,6 +4,8 @@ from contextlib import contextmanager
 
 import numba
 
+from rodsim.errors import UsageError
+
 PAIR_SECONDS = 1.5e-9  # one pair of the sums on one core
 # A sum must last this long, serial, to be worth sharing out: waking a thread that sleeps in GNU
 # OpenMP or in Numba's work queue costs 40-100 us, in tbb 1-2 us.
@@ -26,6 +28,8 @@ def threads_for(points: int, asked: int | None = None):
 
 def _choose(points, asked):
     most = numba.config.NUMBA_NUM_THREADS
+    if asked is not None and asked < 1:
+        raise UsageError(f"threads must be 1 or more, not {asked}")
     if asked is not None:
         return min(asked, most)
     enough = WORTHWHILE.get(numba.config.THREADING_LAYER, WORTHWHILE["omp"])

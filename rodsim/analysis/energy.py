@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,13 +31,9 @@ class EnergyTable:
 
     def write_csv(self, path) -> None:
         """Write the table with full precision; raises FileError."""
-        try:
-            with open(path, "w", newline="") as stream:
-                out = csv.writer(stream)
-                out.writerow(self._heads())
-                out.writerows([[repr(float(value)) for value in row] for row in self.rows])
-        except OSError as error:
-            raise FileError(f"{path}: cannot be written: {error.strerror}") from error
+        from rodsim.export.tables import write_csv
+
+        write_csv(path, self._heads(), [[*np.transpose(self.rows)]])
 
     def _heads(self):
         return [f"{c} ({self.time_unit if c == 'time' else self.unit})" for c in self.columns]

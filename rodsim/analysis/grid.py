@@ -66,12 +66,19 @@ def make_grid(text: str, position: np.ndarray, resolution=None, default=RESOLUTI
     """
     kind, _, rest = text.strip().partition(":")
     if kind not in ("line", "plane", "box"):
-        return _explicit(text)
+        return _not_too_large(text, _explicit(text))
     letters, _, fixed = rest.partition("@")
     middle, extent = _middle_and_extent(position)
     axes = _axes(text, kind, letters, extent)
     at = _fixed(text, fixed, axes, middle)
-    return _around(axes, at, middle, extent, resolution or default[len(axes)])
+    grid = _around(axes, at, middle, extent, resolution or default[len(axes)])
+    return _not_too_large(text, grid)
+
+
+def _not_too_large(text, grid):
+    if np.prod(grid.shape, dtype=float) > MOST_POINTS:
+        raise UsageError(f"grid {text!r}: more than {MOST_POINTS} points")
+    return grid
 
 
 def _middle_and_extent(position):
@@ -124,10 +131,7 @@ def _explicit(text):
             f"grid {text!r}: write plane, plane:yz, line:z, box, or three of FIRST:LAST:COUNT or "
             "a number, for x, y, z: 0,-2:2:41,-3:3:61"
         )
-    grid = Grid(*(_range(text, part) for part in parts))
-    if np.prod(grid.shape, dtype=float) > MOST_POINTS:
-        raise UsageError(f"grid {text!r}: more than {MOST_POINTS} points")
-    return grid
+    return Grid(*(_range(text, part) for part in parts))
 
 
 def _range(text, part):

@@ -22,13 +22,12 @@ def strain_twist(director: np.ndarray, spacing: float, closed: bool = False) -> 
         return along / (cosine[..., None] * spacing)
 
 
-def bend(strain: np.ndarray) -> np.ndarray:
-    """Return the curvature (..., S) of strain twists (..., S, 3).
-
-    The length of its first two components; the first one with its sign where the second vanishes
-    everywhere, as in a planar scene.
-    """
+def is_flat(strain: np.ndarray) -> bool:
+    """Tell whether strain twists (..., S, 3) bend about D^1 alone, as in a planar scene."""
     first, second = strain[..., 0], strain[..., 1]
-    if np.abs(second).max(initial=0.0) <= 1e-9 * np.abs(first).max(initial=0.0):
-        return first
-    return np.hypot(first, second)
+    return bool(np.abs(second).max(initial=0.0) <= 1e-9 * np.abs(first).max(initial=0.0))
+
+
+def bend(strain: np.ndarray) -> np.ndarray:
+    """Return the curvature (..., S) of strain twists (..., S, 3), without a sign."""
+    return np.hypot(strain[..., 0], strain[..., 1])

@@ -72,7 +72,8 @@ def converge(case_path, axes, report, overrides, threads, quiet):
     from rodsim.output.paths import set_aside
     from rodsim.progress import make_progress
 
-    table, picture = (report.with_name(report.name + end) for end in (".csv", ".png"))
+    name = report.name.removesuffix(".csv").removesuffix(".png")
+    table, picture = (report.with_name(name + end) for end in (".csv", ".png"))
     for path in (table, picture):
         moved = set_aside(path)
         if moved:

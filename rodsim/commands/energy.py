@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from rodsim.commands.common import output_argument
+from rodsim.commands.common import output_argument, written_path
 
 
 @click.command()
@@ -19,6 +19,10 @@ def energy(output, kelvin, csv_path, plot_path):
     """Print bending, twisting, shear, stretch, total and kinetic energy over time."""
     from rodsim.analysis.energy import energy_table
 
+    if csv_path:
+        written_path(csv_path, (".csv",))
+    if plot_path:
+        written_path(plot_path, (".png", ".pdf", ".svg"))
     table = energy_table(output, kelvin)
     click.echo(table.text())
     if csv_path:

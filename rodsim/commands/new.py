@@ -17,7 +17,7 @@ def new(kind, file):
         click.echo(template(kind), nl=False)
         return
     try:
-        with file.open("x") as stream:
+        with file.open("x", encoding="utf-8") as stream:
             stream.write(template(kind))
     except FileExistsError:
         raise FileError(f"{file}: exists already, not overwritten") from None

@@ -44,7 +44,7 @@ def run(case_path, output, overrides, threads, max_wall, overwrite, force, dry_r
     say_warnings(case)
     prepare_numba()
     if dry_run:
-        click.echo(reports.describe_case(case))
+        click.echo(reports.describe_case(case, refuse=not force))
         return
     from rodsim.progress import make_progress
     from rodsim.warmup import ensure_compiled

@@ -55,18 +55,18 @@ def _section(study, section):
     yield HEADS[section.axis]
     own = "" if section.own is None else f": good to {section.own.position:.1e} {unit}"
     yield f"reference: {section.reference}{own}"
-    yield f"largest and rms distance in {unit}, energy and speed relative, wall time in seconds"
+    yield f"largest and rms distance in {unit}, wall time in seconds; energy over the larger of its"
+    yield "first and last value, speed over itself; ~: no larger than what the reference may err"
     names = ["method", "value", "largest", "of length", "rms", "angle/deg", "energy"]
     names += ["speed"] * swims + ["solve/s", "evaluations", "pairs x evals"]
     yield "  ".join(f"{name:>13}" for name in names)
-    for result in sorted(
-        section.results, key=lambda r: (METHODS.index(r.row.method), -r.row.value)
-    ):
+    for result in sorted(section.results, key=_order):
         yield "  ".join(f"{cell:>13}" for cell in _cells(section, result, swims))
     for method in dict.fromkeys(result.row.method for result in section.results):
         order = fitted_order(section, method)
         if order is not None:
-            yield f"observed order of {method}: {order:.2f}"
+            what = "space" if section.axis == "points" else method
+            yield f"observed order of {what}: {order:.2f}"
 
 
 def _order(result):
@@ -93,7 +93,7 @@ def _choice(study, section):
     """Yield, for every decade of error, the fastest run of each method within it."""
     if section.axis != "time":
         return
-    done = [r for r in section.results if r.errors]
+    done = [r for r in section.results if r.errors and r.errors.position > 0.0]
     methods = sorted({r.row.method for r in done}, key=METHODS.index)
     if not done:
         return
@@ -144,7 +144,7 @@ class CsvRows:
 
     def _write(self, cells, mode):
         try:
-            with open(self.path, mode, newline="") as stream:
+            with open(self.path, mode, newline="", encoding="utf-8") as stream:
                 csv.writer(stream).writerow(cells)
         except OSError as error:
             raise FileError(f"{self.path}: cannot be written: {error.strerror}") from error

@@ -24,7 +24,7 @@ def write_csv(path, heads, blocks, share=None, progress=None) -> None:
     ``share``: number of blocks, for the progress. Raises FileError.
     """
     progress = progress or Silent()
-    with replacing(path) as temporary, open(temporary, "w", newline="") as stream:
+    with replacing(path) as temporary, open(temporary, "w", newline="", encoding="utf-8") as stream:
         out = csv.writer(stream)
         out.writerow(heads)
         for number, block in enumerate(blocks, start=1):

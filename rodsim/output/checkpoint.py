@@ -62,8 +62,12 @@ class CheckpointWriter:
         self._turn = 1 - self._turn
 
 
-def read_checkpoint(file: GuardedFile) -> dict | None:
-    """Return the newest state that is whole, single numbers as such, or None if there is none."""
+def read_checkpoint(file: GuardedFile, committed: int) -> dict | None:
+    """Return the newest state that is whole, single numbers as such, or None if there is none.
+
+    One that has seen more frames than are committed does not count: after a power cut what was
+    written last can be on the disk without what was written before it.
+    """
     found = []
     for slot in (f"checkpoint/{name}" for name in SLOTS):
         try:
@@ -72,7 +76,8 @@ def read_checkpoint(file: GuardedFile) -> dict | None:
             arrays = {n: file.array(f"{slot}/{n}", "fiub", None) for n in names}
         except FileError:
             continue  # never written, or torn: that is what the other slot is for
-        if serial > 0 and checksum(serial, arrays) == crc:
+        ahead = "frames" in arrays and not np.all(arrays["frames"] <= committed)
+        if serial > 0 and checksum(serial, arrays) == crc and not ahead:
             found.append((serial, arrays))
     if not found:
         return None

@@ -90,7 +90,7 @@ class OutputLock:
 
     def _remove_stale(self):
         try:
-            found = self.path.read_text()
+            found = self.path.read_text(errors="replace")
         except FileNotFoundError:
             return  # given back since
         self._refuse_if_alive(found)
@@ -100,7 +100,7 @@ class OutputLock:
             os.rename(self.path, aside)
         except FileNotFoundError:
             return
-        if aside.read_text() != found:  # another one took over between our two looks
+        if aside.read_text(errors="replace") != found:  # taken over between our two looks
             os.rename(aside, self.path)
             return
         aside.unlink()

@@ -115,7 +115,7 @@ class Trajectory:
 
     def checkpoint(self) -> dict | None:
         """Return the newest whole state of the run, or None if there is none."""
-        return read_checkpoint(self._file)
+        return read_checkpoint(self._file, self.frames)
 
     def _read_header(self):
         file = self._file

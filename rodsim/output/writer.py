@@ -10,6 +10,7 @@ import h5py
 import numpy as np
 
 from rodsim.errors import FileError
+from rodsim.files import has_hdf5_signature
 from rodsim.output import build, layout
 from rodsim.output.build import abandoned, build_file, trim
 from rodsim.output.checkpoint import CheckpointWriter
@@ -17,6 +18,14 @@ from rodsim.output.layout import CLOCK, Plan
 from rodsim.output.paths import OutputLock, take_place, temporary_name
 from rodsim.output.rows import Rows
 from rodsim.output.vtkhdf import View
+
+
+class NotFinite(ValueError):
+    """A value of a frame is NaN or infinite; ``name`` says which."""
+
+    def __init__(self, name: str):
+        super().__init__(f"{name}: not finite")
+        self.name = name
 
 
 class TrajectoryWriter:
@@ -57,6 +66,9 @@ class TrajectoryWriter:
             raise FileError(f"{path}: there is no folder {path.parent}")
         if path.exists() and not path.is_file():
             raise FileError(f"{path}: exists and is not a file")
+        named_so = path.suffix in (".h5", ".hdf5")
+        if overwrite and path.exists() and not named_so and not has_hdf5_signature(path):
+            raise FileError(f"{path}: is no output of a run, so --overwrite does not replace it")
         lock = OutputLock(path)
         lock.acquire()
         return cls.create_locked(path, plan, lock, overwrite, fill)
@@ -205,7 +217,7 @@ def _row(series, given, point_axis):
     if row.shape != series.shape:
         raise ValueError(f"{series.name}: {row.shape} in a frame, not {series.shape}")
     if not np.isfinite(row).all():
-        raise ValueError(f"{series.name}: not finite")
+        raise NotFinite(series.name)
     return row
 
 

@@ -1,22 +1,15 @@
 """One column of a table against another."""
 
-from rodsim.errors import FileError, UsageError
+from rodsim.plotting import style
 
 MARKERS = "osD^vP*X<>"
 
 
 def plot_columns(path, x, y, groups, labels) -> None:
     """Draw ``y`` over ``x``, both lists of T entries, to a file; see :func:`draw_columns`."""
-    try:
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise UsageError("--plot needs matplotlib: pip install 'rodsim[plot]'") from error
-    figure = Figure(figsize=(6.4, 4.2), layout="constrained")
+    figure = style.new_figure(6.4, 4.2)
     draw_columns(figure.add_subplot(), x, y, groups, labels)
-    try:
-        figure.savefig(path, dpi=160)
-    except (OSError, ValueError) as error:
-        raise FileError(f"{path}: cannot be drawn: {error}") from error
+    style.save(figure, path)
 
 
 def draw_columns(axis, x, y, groups, labels):

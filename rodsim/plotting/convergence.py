@@ -3,7 +3,7 @@
 import numpy as np
 
 from rodsim.convergence.report import fitted_order
-from rodsim.errors import FileError, UsageError
+from rodsim.plotting import style
 
 MARKS = {"rkc": ("o", "#0b4f8a"), "euler": ("s", "#d1660f"), "rk4": ("^", "#3a7d2c")}
 SPACE = {"points": ("D", "#8a3b7a"), "epsilon": ("v", "0.45")}
@@ -17,24 +17,16 @@ TITLES = {
 
 def plot_study(study, path) -> None:
     """Draw a work-precision diagram and the errors against what was varied, to a file."""
-    try:
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise UsageError("the picture needs matplotlib: pip install 'rodsim[plot]'") from error
-    figure = Figure(figsize=(11, 4.8), layout="constrained")
+    figure = style.new_figure(11, 4.8)
     left, right = figure.subplots(1, 2)
     draw_work_precision(left, study)
     draw_orders(right, study)
     figure.suptitle(study.case.title or "Error against run time")
-    try:
-        figure.savefig(path, dpi=140)
-    except (OSError, ValueError) as error:
-        raise FileError(f"{path}: cannot be drawn: {error}") from error
+    style.save(figure, path)
 
 
 def draw_work_precision(axis, study):
     """Draw the largest position error over the wall time of the solve; return the axis."""
-    unit, time = study.case.units.length, "s"
     for section in study.sections:
         for method, part in _by_method(section):
             seconds = [np.median(r.outcome.seconds) for r in part]
@@ -42,13 +34,13 @@ def draw_work_precision(axis, study):
             marker, colour = SPACE.get(section.axis) or MARKS[method]
             label = f"{method}, {TITLES[section.axis]}"
             axis.loglog(seconds, errors, DASHES[section.axis], marker=marker, c=colour, label=label)
-        if section.axis == "time" and section.own:
+        if section.axis == "time" and section.own and section.own.position > 0.0:
             axis.axhline(section.own.position, c="0.6", lw=1, zorder=0)
             axis.annotate("the reference is good to this", (0.98, section.own.position),
                           xycoords=("axes fraction", "data"), ha="right", va="bottom",
                           color="0.45", fontsize=8)  # fmt: skip
-    axis.set_xlabel(f"wall time of the solve ({time})")
-    axis.set_ylabel(f"largest position error at the end ({unit})")
+    axis.set_xlabel("wall time of the solve (s)")
+    axis.set_ylabel(style.label("largest position error at the end", study.case.units.length))
     return _finish(axis)
 
 
@@ -66,7 +58,7 @@ def draw_orders(axis, study):
             errors = [r.errors.position for r in part]
             axis.loglog(sizes, errors, DASHES[section.axis], marker=marker, c=colour, label=label)
     axis.set_xlabel("step / run, spacing / length, or epsilon / the case's own")
-    axis.set_ylabel(f"largest position error ({study.case.units.length})")
+    axis.set_ylabel(style.label("largest position error at the end", study.case.units.length))
     return _finish(axis)
 
 
@@ -91,7 +83,13 @@ def _what(section):
 
 
 def _finish(axis):
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    if axis.get_legend_handles_labels()[0]:  # there is something to see
+        axis.legend(frameon=False, fontsize=8)
+        for side in (axis.xaxis, axis.yaxis):
+            side.set_major_locator(LogLocator(numticks=7))
+            side.set_minor_formatter(NullFormatter())
     axis.grid(which="major", color="0.9")
     axis.set_axisbelow(True)
-    axis.legend(frameon=False, fontsize=8)
     return axis

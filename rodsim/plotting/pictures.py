@@ -8,7 +8,7 @@ import numpy as np
 
 from rodsim.analysis.energy import energy_table
 from rodsim.analysis.frames import nearest_frame, spread_frames
-from rodsim.analysis.strain import bend, strain_twist
+from rodsim.analysis.strain import bend, is_flat, strain_twist
 from rodsim.errors import FileError, UsageError
 from rodsim.output import open_trajectory
 from rodsim.plotting import style
@@ -78,7 +78,7 @@ def plot_kymograph(path, out, quantity):
     """Draw ``curvature`` or ``twist`` along every rod over time."""
     with open_trajectory(path) as run:
         _need_frames(run)
-        values = [_along(run, rod, quantity, slice(None)) for rod in run.rods]
+        values = _along(run, quantity, range(run.frames))
         rods, time, units = run.rods, run.time, run.units
     if len(time) < 2:
         raise UsageError(f"{path}: has one frame; a picture over time needs two")
@@ -135,15 +135,23 @@ def _colours(run, chosen, colour):
         share = (run.time[chosen] - low) / ((high - low) or 1.0)
         key = colours, low, high, style.label("time", run.units["time"])
         return [[colours(float(x))] * len(run.rods) for x in share], key
-    values = [[_along(run, rod, colour, frame) for rod in run.rods] for frame in chosen]
-    low, high = limits_of(np.concatenate([v.ravel() for frame in values for v in frame]))
+    values = _along(run, colour, chosen)
+    low, high = limits_of(np.concatenate([value.ravel() for value in values]))
     key = colours, low, high, style.label(colour, f"{run.units['length']}^-1")
-    return [[colours((v - low) / (high - low)) for v in frame] for frame in values], key
+    share = [(value - low) / (high - low) for value in values]
+    return [[colours(of_rod[frame]) for of_rod in share] for frame in range(len(chosen))], key
 
 
-def _along(run, rod, quantity, frames):
-    """Return the curvature or twist of a rod's segments in some frames, (..., S)."""
-    nodes = slice(rod.first, rod.first + rod.count)
-    triads = run.read("director", frames)[..., nodes, :, :]
-    strain = strain_twist(triads, rod.spacing, rod.closed)
-    return bend(strain) if quantity == "curvature" else strain[..., 2]
+def _along(run, quantity, frames):
+    """Return the curvature or twist of the segments of each rod in some frames, (F, S) each.
+
+    Curvature has a sign only where all rods of all frames lie in a plane.
+    """
+    triads, strains = np.array([run.read("director", frame) for frame in frames]), []
+    for rod in run.rods:
+        nodes = triads[:, rod.first : rod.first + rod.count]
+        strains.append(strain_twist(nodes, rod.spacing, rod.closed))
+    if quantity == "twist":
+        return [strain[..., 2] for strain in strains]
+    flat = all(is_flat(strain) for strain in strains)
+    return [strain[..., 0] if flat else bend(strain) for strain in strains]

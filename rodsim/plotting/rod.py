@@ -35,7 +35,9 @@ def draw_rods(axis, camera, rods, position, director, size, colours, kind="tube"
             pieces.append(_faces(camera, position[nodes], triads, size, colour, rod.closed, kind))
     seen, painted = (np.concatenate(parts) for parts in zip(*pieces, strict=True))
     order = np.argsort(seen[..., 2].mean(axis=1), kind="stable")
-    axis.add_collection(_collection(kind, seen[order][..., :2], painted[order]), autolim=False)
+    flat = seen[order][..., :2]
+    axis.add_collection(_collection(kind, flat, painted[order]), autolim=False)
+    axis.update_datalim(flat.reshape(-1, 2))  # what autoscale goes by
     return axis
 
 

@@ -46,7 +46,8 @@ class Shapes:
         points = np.concatenate([self.position, self.tracers], axis=1)
         seen = camera.project(points)[..., :2].reshape(-1, 2)
         low, high = seen.min(axis=0), seen.max(axis=0)
-        space = MARGIN * (high - low).max() + (self.size if self.kind != "line" else 0.0)
+        extent = (high - low).max() or np.ptp(points, axis=(0, 1)).max() or 1.0  # seen end on
+        space = MARGIN * extent + (self.size if self.kind != "line" else 0.0)
         return np.array([low - space, high + space])
 
     def stamp(self, frame: int) -> str:

@@ -22,7 +22,7 @@ def restore_scene(run) -> Scene:
     try:
         case = case_from_mapping(json.loads(run.case_resolved), path=str(run.path))
         entries = [case.rods[rod.name].strain_twist for rod in run.rods]
-    except (ValueError, KeyError, CaseError) as error:
+    except (ValueError, KeyError, TypeError, RecursionError, CaseError) as error:
         raise FileError(f"{run.path}: damaged: the case in it cannot be used: {error}") from error
     rods = _rods(run.rods)
     return Scene(

@@ -120,6 +120,8 @@ def test_settling_keeps_the_motion_and_removes_noise(tmp_path):
     def both():
         with open_trajectory(tmp_path / "out.h5") as run:
             replay = Replay(run)
+            assert not replay.rough
+            replay.rough = True
             raw = replay.sources(2)
             return raw.velocity(raw.position), replay.settled_velocity(2)
 

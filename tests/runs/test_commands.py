@@ -84,7 +84,7 @@ def test_energy_picture(here):
     assert call("energy", "out.h5", "--plot", "e.png").exit_code == 0
     assert (here / "e.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
     refused = call("energy", "out.h5", "--plot", "e.nonsense")
-    assert refused.exit_code == 4
+    assert refused.exit_code == 2
     assert "e.nonsense" in refused.stderr
 
 
