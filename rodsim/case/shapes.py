@@ -59,7 +59,10 @@ class Straight(Placed):
     points: OpenPoints = Field(description="number of points")
     length: Positive | None = quantity("length", "arc length; or give spacing", default=None)
     spacing: Positive | None = quantity("length", "between points; or give length", default=None)
-    perturbation: Number = Field(0.0, description="xi of eqs 40-43")
+    perturbation: Number = Field(
+        0.0,
+        description="xi of eqs 40-43: the rod is stretched by 1 + xi, its triads turned about x by xi rad",
+    )
 
     @model_validator(mode="after")
     def _one_size(self):
@@ -79,7 +82,10 @@ class Ring(Placed):
     kind: Literal["ring"]
     radius: Positive = quantity("length", "radius of the circle")
     points: ClosedPoints = Field(description="number of points")
-    twist_perturbation: Number = Field(0.0, description="xi of eqs 46-49")
+    twist_perturbation: Number = Field(
+        0.0,
+        description="xi of eqs 46-49: the triads are turned about the tangent by xi sin(s/radius) rad",
+    )
 
     @property
     def is_closed(self) -> bool:

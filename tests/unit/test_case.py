@@ -273,3 +273,15 @@ def test_same_data_as_an_ordinary_yaml_reader(load):
     assert np.array(case.rods["ring"].strain_twist) == pytest.approx(
         plain["rods"]["ring"]["strain_twist"]
     )
+
+
+@pytest.mark.parametrize("epsilon", [0.05, {"spacings": 0.5}])
+def test_a_rod_thinner_than_its_spacing_is_warned_of(epsilon):
+    shape = {"kind": "straight", "points": 21, "length": 2.0}
+    moduli = {"bending": 3e-3, "twisting": 3e-3, "shear": 0.7, "stretch": 0.9}
+    data = {"fluid": {"viscosity": 1e-6, "epsilon": epsilon}, "time": {"end": 1e-3},
+            "rods": {"tail": {"shape": shape, "moduli": moduli}}}  # fmt: skip
+    (warning,) = case_from_mapping(data).warnings
+    assert "is 0.5 spacings of rod 'tail'" in str(warning)
+    data["fluid"]["epsilon"] = 0.1
+    assert case_from_mapping(data).warnings == ()
