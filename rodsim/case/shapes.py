@@ -61,7 +61,7 @@ class Straight(Placed):
     spacing: Positive | None = quantity("length", "between points; or give length", default=None)
     perturbation: Number = Field(
         0.0,
-        description="xi of eqs 40-43: the rod is stretched by 1 + xi, its triads turned about x by xi rad",
+        description="xi of eqs 40-43: stretched by 1 + xi, triads turned about x by xi rad",
     )
 
     @model_validator(mode="after")
@@ -84,7 +84,7 @@ class Ring(Placed):
     points: ClosedPoints = Field(description="number of points")
     twist_perturbation: Number = Field(
         0.0,
-        description="xi of eqs 46-49: the triads are turned about the tangent by xi sin(s/radius) rad",
+        description="xi of eqs 46-49: triads turned about the tangent by xi sin(s/radius) rad",
     )
 
     @property
