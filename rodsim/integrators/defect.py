@@ -1,10 +1,10 @@
 """The leading error of RKC2, measured on the steps behind and taken out of the step ahead.
 
 A step of RKC2 errs by -C h^3 y''', in linear and (from 4 stages on, to 2 %) nonlinear terms
-alike; C is about 1/15 (1/11.7 with 4 stages). The trapezoid of its end rates errs by h^3 y'''/12 the other way, so the
-two together tell y''' for nothing. A constant rate g = C h^2 y''' added to every stage of the next
-step then cancels its error: order 3 at the price of order 2. It passes through the stages as any
-rate does, so they damp what the stiff modes have put into it.
+alike; C is about 1/15, with 4 stages 1/11.7. The trapezoid of its end rates errs by h^3 y'''/12
+the other way, so the two together tell y''' for nothing. A constant rate g = C h^2 y''' added to
+every stage of the next step then cancels its error: order 3 at the price of order 2. It passes
+through the stages as any rate does, so they damp what the stiff modes have put into it.
 
 This is a deferred correction (Pereyra, Numer. Math. 8 (1966) 376-391) that lags by a step; RKC2
 becomes a two-step method. On y' = lambda y its roots are below 1 all over the real stability

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from rodsim.case import check_strain_twist, spacings_differ
-from rodsim.errors import CaseError
+from rodsim.errors import CaseError, FileError
 from rodsim.rods.shapes import FORMULAS, place
 from rodsim.rods.state import HALF_TURN, Rods, Scene, State, StrainTwist
 from rodsim.rods.stored import read_shape
@@ -60,7 +60,11 @@ def _build_rod(case, name, rod, stored):
     if shape.kind == "file":
         if stored is not None:
             return stored(name)
-        position, director, spacing, closed = read_shape(shape, _folder(case))
+        try:
+            position, director, spacing, closed = read_shape(shape, _folder(case))
+        except FileError as error:
+            where = case.source.problem(("rods", name, "shape", "path"), str(error))
+            raise FileError(str(where)) from error
         _check_stored(case, name, rod, spacing, position.shape[1] - (not closed))
     else:
         position, director = FORMULAS[shape.kind](shape)

@@ -1,5 +1,6 @@
 """Rods that start from a file: an earlier output, or a text table x y z D1 D2 D3."""
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -44,7 +45,9 @@ def _from_output(shape, path):
 
 def _from_table(path):
     try:
-        table = np.loadtxt(path, ndmin=2)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of an empty file: said below
+            table = np.loadtxt(path, ndmin=2)
     except (ValueError, OSError, UnicodeDecodeError) as error:
         raise FileError(f"{path}: cannot be read as a table of numbers: {error}") from error
     if table.shape[1:] != (12,) or len(table) < 2 or not np.isfinite(table).all():
