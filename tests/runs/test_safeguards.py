@@ -60,13 +60,13 @@ def test_no_run_and_no_case_is_written_over(out, tmp_path, arguments, code):
 def test_frames_of_fixed_steps_are_those_of_their_times(tmp_path):
     """Multiples need to hold to 1e-9 only; the frame is still that of the step which ends there."""
     case = make(tmp_path, REST, [
-        "time.integrator=euler", "time.step=3.333333333e-6", "output.interval=1e-5",
+        "time.integrator=euler", "time.step=1.666666667e-6", "output.interval=1e-5",
         "time.end=1e-4",
     ])  # fmt: skip
     simulate(case, tmp_path / "out.h5")
     with h5py.File(tmp_path / "out.h5") as file:
         steps = file["particles/trajectory/position/step"][:]
-    assert steps.tolist() == list(range(0, 31, 3))
+    assert steps.tolist() == list(range(0, 61, 6))
 
 
 @pytest.mark.compiled
