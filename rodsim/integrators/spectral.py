@@ -1,5 +1,7 @@
 """The fastest rate of a scene: the spectral radius of its Jacobian, by Arnoldi iteration."""
 
+import math
+
 import numpy as np
 
 from rodsim.dynamics import RodSystem
@@ -27,7 +29,7 @@ class SpectralRadius:
 
     def __init__(self, system: RodSystem):
         self.system = system
-        self.vector = None
+        self.vector = self._noise = None
 
     def state(self) -> dict:
         """Return what later estimates depend on, for a checkpoint; no vector yet is zeros."""
@@ -40,48 +42,31 @@ class SpectralRadius:
     def estimate(self, state: State, rate: np.ndarray, tolerance: float | None = None) -> float:
         """Return rho (1/time) at ``state``, where dy/dt is ``rate``; NaN if it is not finite.
 
-        Iterates until two estimates differ by less than ``tolerance`` (relative; by default
-        0.1 % at first, then 1 %).
+        Iterates until a third more products change the estimate by less than ``tolerance``
+        (relative; by default 0.1 % at first, then 1 %).
         """
         first = self.vector is None
         fewest = self.FEWEST_AT_FIRST if first else self.FEWEST
         if tolerance is None:
             tolerance = self.FIRST_TOLERANCE if first else self.TOLERANCE
-        vector, rho, made, close = self._start(), 0.0, 0, 0
-        room = max(self.FEWEST + 2, min(self.MOST, self.LARGEST_BASIS // self.system.rod_size))
-        while made < self.MOST:
-            for found in self._krylov(state, rate, vector, room):
-                before, (rho, vector) = rho, found
-                made += 1
-                close = close + 1 if abs(rho - before) <= tolerance * rho else 0
-                if (close > made / 3 and made >= fewest) or not (np.isfinite(rho) and rho > 0.0):
-                    made = self.MOST
-                    break
-        self.vector = vector if np.isfinite(rho) and rho > 0.0 else None
+        most = max(self.FEWEST + 2, min(self.MOST, self.LARGEST_BASIS // self.system.rod_size))
+        space, rho, check = _Krylov(self._start(), most), 0.0, 3 * fewest // 4
+        for made in range(1, self.MOST + 1):
+            space.extend(self._times(state, rate, space.newest))
+            last = space.closed or made == self.MOST
+            if not (last or space.full or made == check):
+                continue
+            check = made + max(1, made // 3)
+            before, rho = rho, space.largest()
+            if not (np.isfinite(rho) and rho > 0.0):
+                self.vector = None
+                return rho
+            if last or (made >= fewest and abs(rho - before) <= tolerance * rho):
+                break
+            if space.full:
+                space = _Krylov(space.vector(), most)
+        self.vector = space.vector()
         return rho
-
-    def _krylov(self, state, rate, start, room):
-        """Yield the largest Ritz value and its vector after each of up to ``room`` products."""
-        basis = np.empty((room, start.size))
-        upper = np.zeros((room, room))
-        basis[0] = start / np.linalg.norm(start)
-        for k in range(room):
-            product = self._times(state, rate, basis[k])
-            if not np.isfinite(product).all():
-                yield np.nan, start
-                return
-            for _ in range(2):  # once more for what rounding leaves
-                along = basis[: k + 1] @ product
-                product -= along @ basis[: k + 1]
-                upper[: k + 1, k] += along
-            values, vectors = np.linalg.eig(upper[: k + 1, : k + 1])
-            largest = int(np.abs(values).argmax())
-            yield float(np.abs(values[largest])), vectors[:, largest].real @ basis[: k + 1]
-            rest = float(np.linalg.norm(product))
-            if k + 1 == room or rest <= 1e-9 * np.abs(values[largest]):
-                return
-            upper[k + 1, k] = rest
-            basis[k + 1] = product / rest
 
     def _times(self, state, rate, vector):
         """Return J v in the scaled norm."""
@@ -95,6 +80,58 @@ class SpectralRadius:
 
     def _start(self):
         """Return the kept vector with a part in every mode, always the same: runs must repeat."""
-        noise = np.random.default_rng(20130101).standard_normal(self.system.rod_size)
-        noise /= np.linalg.norm(noise)
-        return noise if self.vector is None else self.vector + 0.1 * noise
+        if self._noise is None:
+            noise = np.random.default_rng(20130101).standard_normal(self.system.rod_size)
+            self._noise = noise / np.linalg.norm(noise)
+        return self._noise if self.vector is None else self.vector + 0.1 * self._noise
+
+
+class _Krylov:
+    """An orthonormal basis of v, J v, J J v, ..., and J in it: an upper Hessenberg matrix."""
+
+    def __init__(self, start, most):
+        self.basis = np.empty((most, start.size))
+        self.matrix = np.zeros((most, most))
+        self.basis[0] = start / np.linalg.norm(start)
+        self.made, self.closed = 0, False
+
+    @property
+    def newest(self):
+        """The vector whose product with J is wanted."""
+        return self.basis[self.made]
+
+    @property
+    def full(self):
+        """Whether the basis has all of its vectors."""
+        return self.made == len(self.basis)
+
+    def extend(self, product):
+        """Take J times the newest vector; the space is closed if that leads nowhere new."""
+        self.made += 1
+        whole, rest = math.sqrt(product @ product), self._without_known(product)
+        if rest < 0.5 * whole:  # once more, for what rounding leaves of much that was taken away
+            rest = self._without_known(product)
+        self.closed = not rest > 1e-9 * whole
+        if not (self.full or self.closed):
+            self.matrix[self.made, self.made - 1] = rest
+            self.basis[self.made] = product / rest
+
+    def _without_known(self, product):
+        """Take from the product what the basis has of it; return the norm of the rest."""
+        known = self.basis[: self.made]
+        along = known @ product
+        product -= along @ known
+        self.matrix[: self.made, self.made - 1] += along
+        return math.sqrt(product @ product)
+
+    def largest(self):
+        """Return the largest of the Ritz values, by size; NaN if the matrix is not finite."""
+        part = self.matrix[: self.made, : self.made]
+        if not np.isfinite(part).all():
+            return np.nan
+        return float(np.abs(np.linalg.eigvals(part)).max())
+
+    def vector(self):
+        """Return the Ritz vector of that value, its real part."""
+        values, vectors = np.linalg.eig(self.matrix[: self.made, : self.made])
+        return vectors[:, np.abs(values).argmax()].real @ self.basis[: self.made]
