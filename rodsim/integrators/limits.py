@@ -25,8 +25,9 @@ class Limits:
 def stability(system, radius: SpectralRadius | None = None) -> Limits:
     """Estimate the fastest rate rho of a system in its initial state, and what follows from it.
 
-    Forward Euler is stable for h < 2/rho, RK4 for h < 2.785/rho, without a safety factor; the
-    estimate, by power iteration (``radius``, where one is kept), comes from below, within 0.1 % in 60 random scenes.
+    Forward Euler is stable for h < 2/rho, RK4 for h < 2.785/rho, without a safety factor. The
+    estimate, by Arnoldi iteration (``radius``, where one is kept), comes from below; of 60 random
+    scenes the worst was 0.1 % low.
     Raises UsageError where the rate is no number to compute with.
     """
     state = system.scene.initial
