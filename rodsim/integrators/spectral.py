@@ -129,9 +129,11 @@ class _Krylov:
         part = self.matrix[: self.made, : self.made]
         if not np.isfinite(part).all():
             return np.nan
-        return float(np.abs(np.linalg.eigvals(part)).max())
+        values, vectors = np.linalg.eig(part)
+        sizes = np.abs(values)
+        self._of_largest = vectors[:, sizes.argmax()].real
+        return float(sizes.max())
 
     def vector(self):
-        """Return the Ritz vector of that value, its real part."""
-        values, vectors = np.linalg.eig(self.matrix[: self.made, : self.made])
-        return vectors[:, np.abs(values).argmax()].real @ self.basis[: self.made]
+        """Return the Ritz vector of the value that ``largest`` has just found, its real part."""
+        return self._of_largest @ self.basis[: self.made]

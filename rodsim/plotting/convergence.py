@@ -7,6 +7,11 @@ from rodsim.plotting import style
 
 MARKS = {"rkc": ("o", "#0b4f8a"), "euler": ("s", "#d1660f"), "rk4": ("^", "#3a7d2c")}
 SPACE = {"points": ("D", "#8a3b7a"), "epsilon": ("v", "0.45")}
+SIZES = {
+    "time": "mean step / run",
+    "points": "spacing / length",
+    "epsilon": "epsilon / the case's own",
+}
 DASHES = {"time": "-", "points": "--", "epsilon": ":"}
 TITLES = {
     "time": "tolerance or step",
@@ -57,7 +62,7 @@ def draw_orders(axis, study):
             label = f"{method}, {_what(section)}" + (f": slope {order:.2f}" if order else "")
             errors = [r.errors.position for r in part]
             axis.loglog(sizes, errors, DASHES[section.axis], marker=marker, c=colour, label=label)
-    axis.set_xlabel("step / run, spacing / length, or epsilon / the case's own")
+    axis.set_xlabel(" or ".join(SIZES[section.axis] for section in study.sections))
     axis.set_ylabel(style.label("largest position error at the end", study.case.units.length))
     return _finish(axis)
 
