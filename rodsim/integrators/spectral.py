@@ -108,6 +108,10 @@ class _Krylov:
     def extend(self, product):
         """Take J times the newest vector; the space is closed if that leads nowhere new."""
         self.made += 1
+        if not np.isfinite(product).all():
+            self.matrix[self.made - 1, self.made - 1] = np.nan
+            self.closed = True
+            return
         whole, rest = math.sqrt(product @ product), self._without_known(product)
         if rest < 0.5 * whole:  # once more, for what rounding leaves of much that was taken away
             rest = self._without_known(product)

@@ -73,6 +73,7 @@ def test_a_linear_flow_is_interpolated_exactly():
     assert rates[3:, 0] == pytest.approx(half_curl, abs=1e-12)
 
 
+@pytest.mark.paper
 def test_divergence_vanishes_to_rounding():
     fluid = Fluid(16, 2.3, 1.3, 0.4)
     for _ in range(3):

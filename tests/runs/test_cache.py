@@ -50,6 +50,7 @@ def written(cache):
     return {file: file.stat().st_mtime_ns for file in cache.rglob("*.nb?")}
 
 
+@pytest.mark.long
 @pytest.mark.compiled
 def test_runs_that_meet_a_broken_cache_together_compile_it_anew(tmp_path, broken):
     before = written(broken)
