@@ -42,5 +42,5 @@ SUM_FLAGS = {"reassoc", "contract", "arcp", "nsz"}
 
 kernel = partial(njit, cache=True, error_model="numpy")
 parallel_kernel = partial(njit, cache=True, error_model="numpy", parallel=True, fastmath=SUM_FLAGS)
-part = partial(njit, cache=True, error_model="numpy")
+part = kernel  # without a signature
 inline = partial(njit, cache=True, error_model="numpy", inline="always")

@@ -80,7 +80,7 @@ class Replay:
         of fixed steps, and those of a run at a tolerance of 1e-6 or less.
         """
         state, loads = stored_state(self.run, frame), []
-        rate = self._fastest_rate(state) if frame and self.rough else 0.0
+        rate = self._machinery[1].estimate(state) if frame and self.rough else 0.0
         if not (np.isfinite(rate) and rate > 0.0):
             return self.sources(frame)
         position = state.position.T.copy()
@@ -89,11 +89,6 @@ class Replay:
             loads.append(self._loads(state))
         g = 2.0 * loads[0] - loads[1]
         return Sources(position, g[:3].T.copy(), g[3:].T.copy(), self.scene)
-
-    def _fastest_rate(self, state):
-        system, radius = self._machinery
-        rate = system.rate(state.time, state, system.zeros(), system.zeros())
-        return radius.estimate(state, rate)
 
     def _settle(self, state, step):
         system, _ = self._machinery

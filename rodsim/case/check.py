@@ -20,7 +20,7 @@ from rodsim.case.yaml_text import Path
 Finding = tuple[Path, str]
 MOST_FRAMES = 10_000_000
 MOST_SAMPLES, SOME = 10_000, 200  # segments looked at
-ALONG_THE_RUN = tuple(np.arange(1, 200) / 200.0)
+ALONG_THE_RUN = np.arange(1, 200) / 200.0
 WHOLE = 1e-9  # relative; how near a multiple of the step must be
 NO_REST_STATE = 2.0
 COARSE = 1.0
@@ -80,12 +80,14 @@ def check_strain_twist(
 
 def _samples(rod: Rod, ds: float, segments: int, end: float) -> Iterator[tuple]:
     """Yield (s, times) at which the strain twist is looked at."""
-    for most, times in ((MOST_SAMPLES, (0.0,)), (MOST_SAMPLES, (end,)), (SOME, ALONG_THE_RUN)):
-        if times is ALONG_THE_RUN and not _driven(rod):
-            return
-        count = min(segments, most)
-        s = (np.floor(np.linspace(0, segments - 1, count)) + 0.5) * ds
-        yield s, np.array(times) * (end if times is ALONG_THE_RUN else 1.0)
+    every, some = (
+        (np.floor(np.linspace(0, segments - 1, min(segments, most))) + 0.5) * ds
+        for most in (MOST_SAMPLES, SOME)
+    )
+    yield every, np.zeros(1)
+    if rod.driven:
+        yield every, np.array([end])
+        yield some, end * ALONG_THE_RUN
 
 
 def _where(s, times, index):
@@ -98,10 +100,6 @@ def _entry(entry: float | Expression, s: np.ndarray, times: np.ndarray) -> np.nd
     if isinstance(entry, Expression):
         return entry(s, times[:, None])
     return np.full((len(times), len(s)), entry)
-
-
-def _driven(rod: Rod) -> bool:
-    return any(isinstance(entry, Expression) and entry.uses_t for entry in rod.strain_twist)
 
 
 def _has_expression(rod: Rod) -> bool:

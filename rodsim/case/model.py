@@ -90,6 +90,11 @@ class Rod(Model):
         default=(0.0, 0.0, 0.0),
     )
 
+    @property
+    def driven(self) -> bool:
+        """Whether its strain twist depends on time."""
+        return any(isinstance(entry, Expression) and entry.uses_t for entry in self.strain_twist)
+
 
 class Tube(Model):
     """Passive markers on a tube around a rod."""
@@ -206,9 +211,7 @@ class Case(Model):
         """Longest step of rkc: over a drive that changes in time, it passes in small parts."""
         if self.time.max_step is not None:
             return self.time.max_step
-        entries = (entry for rod in self.rods.values() for entry in rod.strain_twist)
-        driven = any(isinstance(entry, Expression) and entry.uses_t for entry in entries)
-        return self.interval if driven else math.inf
+        return self.interval if any(rod.driven for rod in self.rods.values()) else math.inf
 
     def problem(self, key_path: str | tuple, reason: str) -> Problem:
         """Return a Problem at a key, with its file:line, value and unit, for later checks."""

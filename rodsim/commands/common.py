@@ -5,6 +5,7 @@ from pathlib import Path
 
 import click
 
+STILLS = (".png", ".pdf", ".svg")  # pictures
 set_option = click.option(
     "--set",
     "overrides",

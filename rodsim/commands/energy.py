@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from rodsim.commands.common import output_argument, written_path
+from rodsim.commands.common import STILLS, output_argument, written_path
 
 
 @click.command()
@@ -22,7 +22,7 @@ def energy(output, kelvin, csv_path, plot_path):
     if csv_path:
         written_path(csv_path, (".csv",))
     if plot_path:
-        written_path(plot_path, (".png", ".pdf", ".svg"))
+        written_path(plot_path, STILLS)
     table = energy_table(output, kelvin)
     click.echo(table.text())
     if csv_path:

@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from rodsim.commands.common import (
+    STILLS,
     output_argument,
     prepare_numba,
     say_written,
@@ -24,7 +25,6 @@ Grids (sizes follow the rods, with a margin, unless given):
 SEEDS = {1: 40, 2: 16, 3: 8}  # tracers along the longest side of a line, a plane, a box
 
 TRUSTED = 0.1  # of epsilon: what tracers may be off by in one frame without a warning
-STILLS = (".png", ".pdf", ".svg")
 
 
 # fmt: off

@@ -5,13 +5,14 @@ from pathlib import Path
 import click
 
 from rodsim.commands.common import (
+    STILLS,
     output_argument,
     prepare_numba,
     say_written,
     written_path,
 )
 
-STILLS, MOVIES = (".png", ".pdf", ".svg"), (".gif", ".mp4")
+MOVIES = (".gif", ".mp4")
 WHAT = ("shapes", "energy", "curvature", "twist", "speed")
 
 

@@ -30,9 +30,7 @@ def stability(system, radius: SpectralRadius | None = None) -> Limits:
     scenes the worst was 0.1 % low.
     Raises UsageError where the rate is no number to compute with.
     """
-    state = system.scene.initial
-    rate = system.velocities(state.time, state, system.zeros(), system.zeros())
-    rho = (radius or SpectralRadius(system)).estimate(state, rate, tolerance=1e-6)
+    rho = (radius or SpectralRadius(system)).estimate(system.scene.initial, tolerance=1e-6)
     if not (np.isfinite(rho) and rho > 0.0 and 1.0 / rho > 0.0):
         raise UsageError(
             f"the fastest rate of this scene comes out as {rho:.3g}: its numbers are too large or "
@@ -92,9 +90,8 @@ class RateWatch:
 
     def check(self, state) -> None:
         """Raise StepFailure when the step has come to lie above the limit of stability."""
-        method, system = self.integrator, self.system
-        rate = system.velocities(state.time, state, system.zeros(), system.zeros())
-        method.spectral_radius = self._radius.estimate(state, rate)
+        method = self.integrator
+        method.spectral_radius = self._radius.estimate(state)
         limit = method.stability_limit / method.spectral_radius
         if method.size > GROWN * limit:
             raise StepFailure(

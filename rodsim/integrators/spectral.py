@@ -39,12 +39,18 @@ class SpectralRadius:
         """Take over what ``state`` returned."""
         self.vector = state["vector"] if state["vector"].any() else None
 
-    def estimate(self, state: State, rate: np.ndarray, tolerance: float | None = None) -> float:
-        """Return rho (1/time) at ``state``, where dy/dt is ``rate``; NaN if it is not finite.
+    def estimate(
+        self, state: State, rate: np.ndarray | None = None, tolerance: float | None = None
+    ) -> float:
+        """Return rho (1/time) at ``state``; NaN if it is not finite.
 
+        ``rate`` : dy/dt there, where it is known; else it is evaluated.
         Iterates until a third more products change the estimate by less than ``tolerance``
         (relative; by default 0.1 % at first, then 1 %).
         """
+        if rate is None:
+            zeros = self.system.zeros
+            rate = self.system.velocities(state.time, state, zeros(), zeros())
         first = self.vector is None
         fewest = self.FEWEST_AT_FIRST if first else self.FEWEST
         if tolerance is None:

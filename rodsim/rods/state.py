@@ -153,15 +153,15 @@ class _Table:
         for r, triple in enumerate(entries):
             s = (np.arange(rods.segments[r]) + 0.5) * rods.spacing[r]
             s = s[strides[r] // 2 :: strides[r]]
-            columns = slice(begin, begin + len(s))
+            columns, rows = slice(begin, begin + len(s)), []
             for row, entry in enumerate(triple):
                 if not callable(entry):
                     self.values[row, columns] = entry
                 elif entry.uses_t:
                     self.driven.append((entry, s, row, columns))
+                    rows.append(row)
                 else:
                     self.values[row, columns] = entry(s, 0.0)
-            rows = [row for row, entry in enumerate(triple) if getattr(entry, "uses_t", False)]
             if rows:
                 self.drives.append((rows, columns))
             begin = int(ends[r])
