@@ -60,7 +60,7 @@ def test_no_run_and_no_case_is_written_over(out, tmp_path, arguments, code):
 def test_frames_of_fixed_steps_are_those_of_their_times(tmp_path):
     """Multiples need to hold to 1e-9 only; the frame is still that of the step which ends there."""
     case = make(tmp_path, REST, [
-        "time.integrator=euler", "time.step=1.666666667e-6", "output.interval=1e-5",
+        "time.integrator=euler", "time.step=1.666666666e-6", "output.interval=1e-5",
         "time.end=1e-4",
     ])  # fmt: skip
     simulate(case, tmp_path / "out.h5")
