@@ -16,7 +16,7 @@ import numpy as np
 from host import Neighbours, describe
 from tables import show, write_csv
 
-from rodsim.settings import prepare
+from rodsim.compiled.settings import prepare
 
 CONFIGS = Path(__file__).resolve().parent.parent / "configs"
 

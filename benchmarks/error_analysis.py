@@ -18,7 +18,7 @@ import click
 import numpy as np
 from common import CONFIGS
 
-from rodsim.settings import prepare
+from rodsim.compiled.settings import prepare
 
 SCENES = ("open_rod", "closed_ring", "flagellum")
 BLOBS = ("algebraic7", "algebraic9")
@@ -62,7 +62,7 @@ def run_grid(scene, blob, bar) -> Grid:
     from rodsim.convergence.outcome import solve
     from rodsim.convergence.rows import quiet, refine, rkc
     from rodsim.errors import RodsimError
-    from rodsim.rods import build_scene
+    from rodsim.scene.build import build_scene
 
     case = load(scene, ())
     start = build_scene(case)

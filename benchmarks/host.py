@@ -78,7 +78,7 @@ def _vectors():
     """Return the width that LLVM chooses for a sum of reciprocal square roots, as ours are."""
     import numba
 
-    from rodsim.jit import SUM_FLAGS
+    from rodsim.compiled.flags import SUM_FLAGS
 
     @numba.njit("float64(float64[::1])", fastmath=set(SUM_FLAGS), error_model="numpy")
     def probe(values):

@@ -14,7 +14,7 @@ from tables import Spread, Table
 
 SIZES = (50, 76, 100, 200, 400, 600, 1000, 2000)
 QUICK_SIZES = (50, 200, 600)
-VARIANTS = {  # planar, angular: arguments of rodsim.fluid.velocity_kernel
+VARIANTS = {  # planar, angular: arguments of rodsim.flows.velocity.velocity_kernel
     "spatial": (False, True),
     "no_w": (False, False),
     "planar": (True, True),
@@ -64,7 +64,7 @@ def call(blob, size, threads, variant):
     """Return a function that evaluates one sum over ``size`` points of a ring."""
     import numba
 
-    from rodsim.fluid import BLOBS, velocity_kernel
+    from rodsim.flows.velocity import BLOBS, velocity_kernel
 
     angle = np.arange(size) * (2.0 * np.pi / size)
     points = 2.5 * np.stack([0.0 * angle, np.cos(angle), np.sin(angle)])

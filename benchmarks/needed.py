@@ -86,8 +86,8 @@ def evaluations(points):
 def system(points, *overrides):
     """Return the system of the closed ring with so many points."""
     from rodsim.case import load_case
-    from rodsim.dynamics import RodSystem
-    from rodsim.rods import build_scene
+    from rodsim.scene.build import build_scene
+    from rodsim.scene.system import RodSystem
 
     change = f"rods.ring.shape.points={points}"
     return RodSystem(build_scene(load_case(CONFIGS / "closed_ring.yaml", [change, *overrides])))
@@ -119,11 +119,11 @@ def frames(points, folder):
 def frame(points, path, fields):
     """Return a function that writes a frame, over and over the same one, of a file of its own."""
     from rodsim.case import load_case
-    from rodsim.machine import Machine
     from rodsim.output.writer import TrajectoryWriter
-    from rodsim.recorder import Recorder, plan_output
-    from rodsim.rods import build_scene
-    from rodsim.snapshot import capture
+    from rodsim.run.machine import Machine
+    from rodsim.run.recorder import Recorder, plan_output
+    from rodsim.run.snapshot import capture
+    from rodsim.scene.build import build_scene
 
     changes = f"rods.ring.shape.points={points}", f"output.fields={fields}", "output.interval=0.1"
     case = load_case(CONFIGS / "closed_ring.yaml", changes)

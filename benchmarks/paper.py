@@ -7,7 +7,7 @@ import click
 from figures.report import markdown
 from figures.runs import Workplace
 
-from rodsim.settings import prepare
+from rodsim.compiled.settings import prepare
 
 FIGURES = ("fig2", "fig3", "fig4", "fig5", "table3", "fig6")
 

@@ -7,7 +7,7 @@ def sum_of(scene, threads):
     """Return a function that evaluates the sums over a scene's rods once."""
     import numba
 
-    from rodsim.fluid import BLOBS, velocity_kernel
+    from rodsim.flows.velocity import BLOBS, velocity_kernel
 
     kernel = velocity_kernel(BLOBS[scene.blob], scene.planar)
     position = scene.initial.position
@@ -23,8 +23,8 @@ def sum_of(scene, threads):
 
 def elasticity_of(scene):
     """Return a function that turns a scene's triads and computes its point loads once."""
-    from rodsim.elasticity import point_loads
-    from rodsim.rotations import rotate
+    from rodsim.compiled.rotations import rotate
+    from rodsim.forces.elasticity import point_loads
 
     state = scene.initial
     theta, director = np.zeros_like(state.position), np.empty_like(state.director)

@@ -116,8 +116,8 @@ class Evaluation:
 
     def _build(self):
         from rodsim.case import load_case
-        from rodsim.dynamics import RodSystem
-        from rodsim.rods import build_scene
+        from rodsim.scene.build import build_scene
+        from rodsim.scene.system import RodSystem
 
         change = f"rods.ring.shape.points={self.size}"
         case = load_case(CONFIGS / "closed_ring.yaml", [change])

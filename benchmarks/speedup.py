@@ -67,7 +67,7 @@ class Solve:
 
     def __init__(self, config, threads, *overrides):
         from rodsim.case import load_case
-        from rodsim.rods import build_scene
+        from rodsim.scene.build import build_scene
 
         self.name, self.threads = config, threads
         self.case = load_case(CONFIGS / f"{config}.yaml", overrides)
@@ -76,7 +76,7 @@ class Solve:
         self.sum = Timed(sum_of(self.scene, threads))
 
     def _machine(self):
-        from rodsim.machine import Machine
+        from rodsim.run.machine import Machine
 
         return Machine(self.case, self.scene, force=True)
 

@@ -73,7 +73,7 @@ def run(case, folder: Path, **time):
     from rodsim.case import case_from_mapping
     from rodsim.errors import RodsimError
     from rodsim.output import open_trajectory
-    from rodsim.simulation import Summary, simulate
+    from rodsim.run.simulate import Summary, simulate
 
     case = dict(case)
     table = case.pop("table", None)
@@ -140,10 +140,10 @@ def fixed_step(case, method, limit, most, folder, reference, length) -> Cell:
 def measure(case, methods, most) -> dict:
     """Return a cell for each method, and the fastest rate of the scene."""
     from rodsim.case import case_from_mapping
-    from rodsim.dynamics import RodSystem
     from rodsim.errors import RodsimError
     from rodsim.integrators.limits import stability
-    from rodsim.rods import build_scene
+    from rodsim.scene.build import build_scene
+    from rodsim.scene.system import RodSystem
 
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

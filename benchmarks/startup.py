@@ -28,14 +28,14 @@ def square(x):
     return x * x
 """
 LARGE = """
-from rodsim.settings import prepare
+from rodsim.compiled.settings import prepare
 prepare()
 from rodsim.case import load_case
-from rodsim.machine import Machine
+from rodsim.run.machine import Machine
 from rodsim.output.writer import TrajectoryWriter
-from rodsim.recorder import Recorder, plan_output
-from rodsim.rods import build_scene
-from rodsim.snapshot import capture
+from rodsim.run.recorder import Recorder, plan_output
+from rodsim.scene.build import build_scene
+from rodsim.run.snapshot import capture
 changes = "rods.ring.shape.points=100000", "output.interval=0.1"
 case = load_case({config!r}, changes)
 scene = build_scene(case)

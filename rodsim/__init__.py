@@ -17,11 +17,11 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "load_case": "rodsim.case",
-    "simulate": "rodsim.simulation",
-    "resume": "rodsim.simulation",
+    "simulate": "rodsim.run.simulate",
+    "resume": "rodsim.run.simulate",
     "open_trajectory": "rodsim.output",
-    "velocity": "rodsim.fluid",
-    "pressure": "rodsim.fluid",
+    "velocity": "rodsim.flows.velocity",
+    "pressure": "rodsim.flows.velocity",
     "RodsimError": "rodsim.errors",
 }
 __all__ = ["__version__", *_HOMES]

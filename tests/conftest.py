@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from rodsim.settings import prepare
+from rodsim.compiled.settings import prepare
 
 prepare()  # threads and cache as the command has them; before Numba is imported
 

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from rodsim.case import load_case
-from rodsim.dynamics import RodSystem
 from rodsim.integrators import make_integrator
-from rodsim.rods import build_scene
+from rodsim.scene.build import build_scene
+from rodsim.scene.system import RodSystem
 
 ROOT = Path(__file__).parent.parent
 CONFIGS = ROOT / "configs"

@@ -7,7 +7,7 @@ import click
 
 sys.path[0] = str(Path(__file__).parent.parent)  # the folder of the package, not the package
 
-from rodsim.settings import prepare  # noqa: E402
+from rodsim.compiled.settings import prepare  # noqa: E402
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})

@@ -14,7 +14,7 @@ import math
 import numpy as np
 from numba import prange
 
-from rodsim.jit import inline, kernel, parallel_kernel
+from rodsim.compiled.flags import inline, kernel, parallel_kernel
 
 WIDTH = 6  # grid points a side that a point of a rod can reach: 4 of delta_c, one more for d
 

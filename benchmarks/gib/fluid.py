@@ -12,7 +12,7 @@ import numpy as np
 from numba import prange
 
 from gib.transforms import Transforms
-from rodsim.jit import ONE, inline, parallel_kernel
+from rodsim.compiled.flags import ONE, inline, parallel_kernel
 
 ZERO = np.uint64(0)
 

@@ -7,15 +7,15 @@ import numpy as np
 
 from gib.coupling import interpolate, spread
 from gib.fluid import Fluid
-from rodsim.dynamics import RodSystem
-from rodsim.elasticity import point_loads
+from rodsim.compiled.rotations import rotate
 from rodsim.errors import CaseError, DivergedError
+from rodsim.forces.elasticity import point_loads
 from rodsim.output import TrajectoryWriter
 from rodsim.progress import Silent
-from rodsim.recorder import plan_output
-from rodsim.rods import build_scene
-from rodsim.rods.state import State
-from rodsim.rotations import rotate
+from rodsim.run.recorder import plan_output
+from rodsim.scene.build import build_scene
+from rodsim.scene.state import State
+from rodsim.scene.system import RodSystem
 
 STEP = 1e-6  # s, Table 1
 

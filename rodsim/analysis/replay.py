@@ -8,9 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from rodsim.elasticity import point_loads
-from rodsim.fluid import pressure, velocity
-from rodsim.rods.restore import restore_scene, stored_state
+from rodsim.flows.velocity import pressure, velocity
+from rodsim.forces.elasticity import point_loads
+from rodsim.scene.restore import restore_scene, stored_state
 
 EXACT = 1e-6  # tolerance of a run from which on settling adds more error than it takes away
 SETTLING = 10  # Euler steps that let the fastest modes of a frame come to rest
@@ -55,8 +55,8 @@ class Replay:
     @cached_property
     def _machinery(self):
         """The system of the scene and its fastest rate; compiled only where states are moved."""
-        from rodsim.dynamics import RodSystem
         from rodsim.integrators.spectral import SpectralRadius
+        from rodsim.scene.system import RodSystem
 
         system = RodSystem(self.scene)
         return system, SpectralRadius(system)

@@ -23,7 +23,7 @@ threads_option = click.option(
 
 
 def _seconds(ctx, param, text):
-    from rodsim.stopping import parse_duration
+    from rodsim.run.stopping import parse_duration
 
     try:
         return None if text is None else parse_duration(text)
@@ -42,7 +42,7 @@ max_wall_option = click.option(
 @contextmanager
 def announce(summary, output, quiet):
     """Say how a run has ended and what it has cost, however it ends."""
-    from rodsim import reports
+    from rodsim.commands import reports
 
     try:
         yield
@@ -81,7 +81,7 @@ def is_output(path) -> bool:
 
 def prepare_numba() -> None:
     """Choose cache and threads; before anything imports Numba."""
-    from rodsim.settings import prepare
+    from rodsim.compiled.settings import prepare
 
     prepare()
 

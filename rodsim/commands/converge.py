@@ -63,7 +63,7 @@ def converge(case_path, axes, report, overrides, threads, quiet):
     case = load(case_path, overrides)
     say_warnings(case)
     prepare_numba()
-    from rodsim.warmup import ensure_compiled
+    from rodsim.run.warmup import ensure_compiled
 
     plain = load(case_path, (*overrides, "tracers=null"))
     ensure_compiled(plain, lambda line: quiet or click.echo(line, err=True))

@@ -67,8 +67,8 @@ def flow(output, at, grid_text, resolution, path, colour, arrows, tracers, until
     _refuse_unused(tracers, {"--arrows": arrows, "--raw": raw}, {"--until": until is not None})
     there = path.exists()
     prepare_numba()
+    from rodsim.compiled.threads import threads_for
     from rodsim.output import open_trajectory
-    from rodsim.threads import threads_for
 
     with open_trajectory(output) as run, threads_for(10**6, threads):
         if tracers:

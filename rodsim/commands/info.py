@@ -13,7 +13,7 @@ from rodsim.commands.common import is_output, load, prepare_numba, say_warnings,
 @click.option("--check", is_flag=True, help="Read the whole output and say if all of it is good.")
 def info(path, overrides, check):
     """Describe a case (points, fastest rate, stable steps) or an output file."""
-    from rodsim import reports
+    from rodsim.commands import reports
 
     if is_output(path):
         click.echo(reports.describe_output(path))

@@ -24,13 +24,13 @@ def resume(output, overrides, threads, max_wall, quiet):
 
     --set can only give a later time.end, or more output.fields.
     """
-    from rodsim.stopping import Stopper
+    from rodsim.run.stopping import Stopper
 
     stop = Stopper(max_wall)
     prepare_numba()
-    from rodsim.continuation import open_past
     from rodsim.progress import make_progress
-    from rodsim.warmup import ensure_compiled
+    from rodsim.run.past import open_past
+    from rodsim.run.warmup import ensure_compiled
 
     with open_past(output, overrides) as past:
         case, complete = past.case, past.complete
@@ -38,7 +38,7 @@ def resume(output, overrides, threads, max_wall, quiet):
         quiet or click.echo(f"{output}: is finished; a later end: --set time.end=...", err=True)
         return
     compiled = ensure_compiled(case, lambda line: quiet or click.echo(line, err=True))
-    from rodsim.simulation import Summary, resume
+    from rodsim.run.simulate import Summary, resume
 
     summary = Summary(compile_seconds=compiled)
     label = case.title or output.name

@@ -36,8 +36,8 @@ from rodsim.commands.common import (
 @click.option("-q", "--quiet", is_flag=True, help="No progress and no summary.")
 def run(case_path, output, overrides, threads, max_wall, overwrite, force, dry_run, quiet):
     """Run a case and write its trajectory, energies and balances to an HDF5 file."""
-    from rodsim import reports
-    from rodsim.stopping import Stopper
+    from rodsim.commands import reports
+    from rodsim.run.stopping import Stopper
 
     stop = Stopper(max_wall)
     case = load(case_path, overrides)
@@ -47,10 +47,10 @@ def run(case_path, output, overrides, threads, max_wall, overwrite, force, dry_r
         click.echo(reports.describe_case(case, refuse=not force))
         return
     from rodsim.progress import make_progress
-    from rodsim.warmup import ensure_compiled
+    from rodsim.run.warmup import ensure_compiled
 
     compiled = ensure_compiled(case, lambda line: quiet or click.echo(line, err=True))
-    from rodsim.simulation import Summary, simulate
+    from rodsim.run.simulate import Summary, simulate
 
     def inform(limits):
         if not quiet:

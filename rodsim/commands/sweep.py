@@ -97,7 +97,7 @@ def _compile(left, quiet):
     """Compile once what the runs need, instead of in every one of them at the same time."""
     prepare_numba()
     from rodsim.case import load_case
-    from rodsim.warmup import ensure_compiled
+    from rodsim.run.warmup import ensure_compiled
 
     for run in left:
         ensure_compiled(load_case(run.case), lambda line: quiet or click.echo(line, err=True))

@@ -20,7 +20,7 @@ def validate(ctx, cases, overrides):
     for path in cases:
         try:
             case = load(path, overrides)
-            from rodsim.rods import build_scene
+            from rodsim.scene.build import build_scene
 
             build_scene(case)
         except RodsimError as error:

@@ -8,10 +8,10 @@ from time import perf_counter
 import numpy as np
 
 from rodsim.analysis.difference import position_errors, triad_angle
-from rodsim.elasticity import ENERGIES
 from rodsim.errors import StepFailure
-from rodsim.machine import Machine
-from rodsim.rods import Scene, State, build_scene
+from rodsim.forces.elasticity import ENERGIES
+from rodsim.run.machine import Machine
+from rodsim.scene.build import Scene, State, build_scene
 
 
 @dataclass(frozen=True)

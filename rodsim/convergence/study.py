@@ -9,10 +9,10 @@ from time import monotonic
 from rodsim.convergence import rows
 from rodsim.convergence.outcome import Errors, Outcome, compare, solve
 from rodsim.convergence.rows import Row
-from rodsim.dynamics import RodSystem
 from rodsim.errors import CaseError, DivergedError, UsageError
 from rodsim.integrators.limits import stability
-from rodsim.rods import build_scene
+from rodsim.scene.build import build_scene
+from rodsim.scene.system import RodSystem
 
 REPEATS = 3
 BESIDE = 20_000  # pairs that all but the sums takes as long as, in an evaluation

@@ -51,7 +51,7 @@ def export_paths(path, time, paths, progress=None) -> None:
 
 def tube_radius(run) -> float:
     """Return ``epsilon e^(-1/2)``: a line of blobs moves as a cylinder of this radius does."""
-    from rodsim.rods.restore import restore_scene
+    from rodsim.scene.restore import restore_scene
 
     return float(restore_scene(run).epsilon * np.exp(-0.5))
 

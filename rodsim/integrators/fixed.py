@@ -1,8 +1,8 @@
 """What the fixed-step methods share: whole steps, counted."""
 
-from rodsim.dynamics import RodSystem
 from rodsim.integrators.step import Step
-from rodsim.rods.state import State
+from rodsim.scene.state import State
+from rodsim.scene.system import RodSystem
 
 
 class FixedStep:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from rodsim.jit import VEC, kernel
+from rodsim.compiled.flags import VEC, kernel
 
 
 @kernel(f"void(float64, {VEC}, float64, {VEC}, {VEC})")

@@ -12,13 +12,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from rodsim.dynamics import RodSystem
 from rodsim.errors import StepFailure
 from rodsim.integrators.defect import Defect
 from rodsim.integrators.spectral import SpectralRadius
 from rodsim.integrators.step import Step
-from rodsim.rods.state import State
-from rodsim.stages import to_increments
+from rodsim.scene.loop import to_increments
+from rodsim.scene.state import State
+from rodsim.scene.system import RodSystem
 
 DAMPING = 2.0 / 13.0
 SAFETY = 0.8

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from rodsim.dynamics import RodSystem
 from rodsim.integrators.passes import image, probe
-from rodsim.rods.state import State
+from rodsim.scene.state import State
+from rodsim.scene.system import RodSystem
 
 PERTURBATION = 1e-6  # rad, and of the longest rod
 

@@ -7,9 +7,9 @@ from typing import Protocol
 
 import numpy as np
 
-from rodsim.dynamics import RodSystem
-from rodsim.rods.state import State
-from rodsim.rotations import angular_velocity
+from rodsim.compiled.rotations import angular_velocity
+from rodsim.scene.state import State
+from rodsim.scene.system import RodSystem
 
 
 @dataclass(frozen=True)

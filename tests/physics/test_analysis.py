@@ -12,7 +12,7 @@ from rodsim.analysis.curve import (
 )
 from rodsim.analysis.topology import linking_number, twist, writhe
 from rodsim.errors import UsageError
-from rodsim.rods.shapes import rotation_matrix
+from rodsim.scene.shapes import rotation_matrix
 
 TURN = rotation_matrix((0.3, -0.8, 0.5), 1.1)
 

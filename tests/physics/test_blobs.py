@@ -5,7 +5,7 @@ import pytest
 import twins
 from scipy.integrate import quad
 
-from rodsim.fluid.blobs import BLOBS, dipole_scalars, inverse_distance, stokeslet_scalars
+from rodsim.flows.blobs import BLOBS, dipole_scalars, inverse_distance, stokeslet_scalars
 
 EPSILON = 0.37
 DISTANCES = [0.05, 0.4, 1.3, 6.0]

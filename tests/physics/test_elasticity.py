@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import twins
 
-from rodsim.elasticity import energies, first_half_turn, point_loads, segment_strain
-from rodsim.rods.shapes import rotation_matrix
-from rodsim.rods.state import Rods
-from rodsim.rotations import rotate
+from rodsim.compiled.rotations import rotate
+from rodsim.forces.elasticity import energies, first_half_turn, point_loads, segment_strain
+from rodsim.scene.shapes import rotation_matrix
+from rodsim.scene.state import Rods
 
 MODULI = np.array([[3.1e-3, 4.7e-3, 2.3e-3, 0.83, 0.71, 1.3]]).T  # nothing equal, nothing 1
 

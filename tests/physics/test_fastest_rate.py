@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from rodsim.case import case_from_mapping
-from rodsim.dynamics import RodSystem
 from rodsim.integrators.limits import stability
 from rodsim.integrators.spectral import SpectralRadius
-from rodsim.rods import build_scene
+from rodsim.scene.build import build_scene
+from rodsim.scene.system import RodSystem
 
 
 def system_of(points, spacings, blob, omega=0.1):

@@ -7,8 +7,8 @@ import twins
 
 from rodsim import pressure, velocity
 from rodsim.errors import UsageError
-from rodsim.fluid import BLOBS, velocity_kernel
-from rodsim.rods.shapes import rotation_matrix
+from rodsim.flows.velocity import BLOBS, velocity_kernel
+from rodsim.scene.shapes import rotation_matrix
 
 EPSILON, VISCOSITY = 0.31, 2.7e-3
 both_blobs = pytest.mark.parametrize("blob", BLOBS)

@@ -7,11 +7,11 @@ from scenes import difference, final_state, fixed, last, system_of
 
 from rodsim.analysis.helix import fit_helix, triad_turns
 from rodsim.case import load_case
-from rodsim.dynamics import RodSystem
-from rodsim.elasticity import ENERGIES
+from rodsim.forces.elasticity import ENERGIES
 from rodsim.integrators import make_integrator
-from rodsim.rods import build_scene
-from rodsim.rods.shapes import rotation_matrix
+from rodsim.scene.build import build_scene
+from rodsim.scene.shapes import rotation_matrix
+from rodsim.scene.system import RodSystem
 
 SMALL_OPEN = ("open_rod", "rods.rod.shape.points=24", "fluid.epsilon.spacings=3")
 

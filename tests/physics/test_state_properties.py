@@ -12,11 +12,11 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rodsim.dynamics import RodSystem
+from rodsim.compiled.rotations import rotate
 from rodsim.integrators import RK4
-from rodsim.rods import Rods, Scene, State, StrainTwist
-from rodsim.rods.shapes import rotation_matrix
-from rodsim.rotations import rotate
+from rodsim.scene.shapes import rotation_matrix
+from rodsim.scene.state import Rods, Scene, State, StrainTwist
+from rodsim.scene.system import RodSystem
 
 ROUNDINGS = 100
 LOADS_AND_VELOCITIES = ("force", "torque", "velocity", "angular_velocity")

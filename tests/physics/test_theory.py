@@ -5,7 +5,7 @@ import pytest
 import theory
 from scenes import system_of
 
-from rodsim.fluid import velocity
+from rodsim.flows.velocity import velocity
 from rodsim.integrators import make_integrator
 
 MU, EPSILON = 1.7e-6, 0.33  # of the long rod

@@ -14,10 +14,10 @@ from rodsim.errors import StoppedError
 
 HOOK = """
 import errno, os, resource, signal, sys
-from rodsim.settings import prepare
+from rodsim.compiled.settings import prepare
 prepare()
 from rodsim.output.rows import Rows
-from rodsim.watch import Watch
+from rodsim.run.watch import Watch
 from rodsim.__main__ import main
 check, put = Watch.check, Rows.put
 def at_step(self, step):

@@ -9,8 +9,8 @@ import h5py
 import pytest
 from scenes import CONFIGS
 
-from rodsim.settings import fingerprint
-from rodsim.warmup import LIST, note_compiled
+from rodsim.compiled.settings import fingerprint
+from rodsim.run.warmup import LIST, note_compiled
 
 COMPILING = "compiling for this kind of scene"
 
@@ -35,7 +35,7 @@ def positions(path):
 @pytest.fixture
 def broken(tmp_path):
     """Return a cache like that of this process, half of its files cut off since."""
-    import rodsim.machine  # noqa: F401  (what is not in the cache of this process comes there)
+    import rodsim.run.machine  # noqa: F401  (what is not in the cache of this process comes there)
 
     cache = tmp_path / "cache" / "rodsim" / fingerprint()
     shutil.copytree(os.environ["NUMBA_CACHE_DIR"], cache)

@@ -19,7 +19,7 @@ import rodsim
 from rodsim import open_trajectory
 from rodsim.cli import main
 from rodsim.errors import DivergedError, StepFailure
-from rodsim.rods import build_scene
+from rodsim.scene.build import build_scene
 
 RING = str(CONFIGS / "closed_ring.yaml")
 SHORT = ("--set", "rods.ring.shape.points=40", "--set", "time.end=2e-3")
@@ -188,7 +188,7 @@ def test_a_forced_run_that_diverges_keeps_its_frames_and_says_what_to_do(here):
 
 
 def test_a_run_whose_steps_fail_says_where_and_which_command_may_help():
-    from rodsim.machine import Machine
+    from rodsim.run.machine import Machine
 
     case = load("closed_ring", "rods.ring.shape.points=40", "rods.ring.strain_twist=[1.2, 0, 0.5]")
     machine = Machine(case, build_scene(case), force=False)

@@ -15,7 +15,7 @@ from outputs import TIMES, create, frame
 
 from rodsim import open_trajectory
 from rodsim.errors import FileError
-from rodsim.output import again, build
+from rodsim.output import build, reopen
 from rodsim.output.layout import FIELDS
 from rodsim.output.paths import OutputLock
 
@@ -88,8 +88,8 @@ def record(path, monkeypatch, times, restart):
                 writer._lock.release()
                 lock = OutputLock(path)
                 lock.acquire()
-                writer = again.reopen(path, writer._plan, lock)
-                again.note_resume(writer, "once more")
+                writer = reopen.reopen(path, writer._plan, lock)
+                reopen.note_resume(writer, "once more")
                 # the frame before is written again, as after a checkpoint that came before it
                 writer.write_frame(index - 1, 10 * index - 8, *frame(index - 1))
             writer.write_frame(index, 10 * index + 2, *frame(index))

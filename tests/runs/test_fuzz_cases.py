@@ -15,11 +15,11 @@ from hypothesis import strategies as st
 from scenes import CONFIGS
 
 from rodsim.case import TEMPLATES, case_from_mapping, load_case, template
-from rodsim.dynamics import RodSystem
 from rodsim.errors import CaseError, FileError, StepFailure
 from rodsim.integrators import make_integrator
-from rodsim.rods import build_scene
-from rodsim.watch import Watch
+from rodsim.run.watch import Watch
+from rodsim.scene.build import build_scene
+from rodsim.scene.system import RodSystem
 
 MOST_POINTS = 400  # larger scenes are valid, and only built: their step takes too long here
 SMALL = ("points: 200", "points: 600", "points: 76", "along: 100")

@@ -298,8 +298,8 @@ def test_a_signal_stops_after_the_step(tmp_path, name):
     """The signal comes in the middle of a run of a process of its own, sent by itself."""
     simulate(make(tmp_path, DRIVEN), tmp_path / "whole.h5")
     code = (
-        "import os, signal, sys; from rodsim.settings import prepare; prepare()\n"
-        "from rodsim.watch import Watch; from rodsim.__main__ import main\n"
+        "import os, signal, sys; from rodsim.compiled.settings import prepare; prepare()\n"
+        "from rodsim.run.watch import Watch; from rodsim.__main__ import main\n"
         "check = Watch.check\n"
         "def send(self, step):\n"
         f"    if step.number == 20: os.kill(os.getpid(), signal.{name})\n"
@@ -332,7 +332,7 @@ def test_the_wall_time_stops_a_run(tmp_path):
 
 
 def test_a_second_interrupt_does_not_wait(monkeypatch):
-    from rodsim.stopping import Stopper
+    from rodsim.run.stopping import Stopper
 
     with Stopper() as stop:
         os.kill(os.getpid(), signal.SIGINT)

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from rodsim.recorder import frame_times
+from rodsim.run.recorder import frame_times
 
 
 @pytest.mark.parametrize(

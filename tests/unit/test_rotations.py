@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from rodsim.rotations import rotate, rotation_vector_rate
+from rodsim.compiled.rotations import rotate, rotation_vector_rate
 
 
 def cross_matrix(v):

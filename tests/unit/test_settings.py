@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 CODE = """
-from rodsim.settings import prepare
+from rodsim.compiled.settings import prepare
 prepare()
 import os
 print(os.environ["NUMBA_CACHE_DIR"])
@@ -38,7 +38,7 @@ def test_where_that_cannot_be_written_the_process_has_a_folder_of_its_own(tmp_pa
 
 
 def test_importing_the_library_changes_no_setting():
-    code = "import os; before = dict(os.environ); import rodsim.simulation, rodsim.machine; "
+    code = "import os; before = dict(os.environ); import rodsim.run.simulate, rodsim.run.machine; "
     code += "assert dict(os.environ) == before"
     environment = {k: v for k, v in os.environ.items() if not k.startswith("NUMBA_")}
     done = subprocess.run([sys.executable, "-c", code], env=environment, check=False)
@@ -47,7 +47,8 @@ def test_importing_the_library_changes_no_setting():
 
 @pytest.mark.parametrize("name", ["NUMBA_CACHE_DIR", "OMP_WAIT_POLICY"])
 def test_what_the_user_has_set_is_left_alone(name, tmp_path):
-    code = f"from rodsim.settings import prepare; prepare(); import os; print(os.environ[{name!r}])"
+    code = "from rodsim.compiled.settings import prepare; prepare(); import os; "
+    code += f"print(os.environ[{name!r}])"
     environment = {**os.environ, name: str(tmp_path)}
     done = subprocess.run(
         [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
@@ -62,11 +63,11 @@ class Server(dict):  # what LLVM finds on an Intel server
 names = "sse2 sse3 ssse3 sse4.1 sse4.2 avx avx2 fma avx512f avx512dq avx512vl avx512bw popcnt"
 llvm.get_host_cpu_features = lambda: Server.fromkeys(names.split(), True)
 llvm.get_host_cpu_name = lambda: "icelake-server"
-from rodsim.settings import prepare
+from rodsim.compiled.settings import prepare
 prepare()
 import re
 from numba import types
-from rodsim.fluid.sums import _sum
+from rodsim.flows.free import _sum
 plane = types.Array(types.float64, 2, "C")
 kernel = _sum(7, False, True)  # compiled, never run
 kernel.compile((plane, plane, plane, types.float64, types.float64, plane))

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from rodsim.case import load_case
-from rodsim.dynamics import RodSystem
-from rodsim.rods import build_scene
+from rodsim.scene.build import build_scene
+from rodsim.scene.system import RodSystem
 
 CASE = """
 fluid: {{viscosity: 1.3e-6, epsilon: 0.2}}

@@ -5,7 +5,7 @@ import pytest
 from scenes import system_of
 
 from rodsim.integrators.rkc import RKC, coefficients
-from rodsim.rods import state as state_module
+from rodsim.scene import state as state_module
 
 DRIVEN = "rods.ring.strain_twist=['1.2*cos(40000*t + s)', 0, '0.3*t*1e4']"
 SCENE = ("closed_ring_low_twist", "rods.ring.shape.points=14", "time.end=1e-4",

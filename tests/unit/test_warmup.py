@@ -2,8 +2,8 @@
 
 import pytest
 
-from rodsim import settings
-from rodsim.warmup import LIST, is_compiled, note_compiled
+from rodsim.compiled import settings
+from rodsim.run.warmup import LIST, is_compiled, note_compiled
 
 RING, PLANE = "here-algebraic7-0-0", "here-algebraic7-1-0"
 

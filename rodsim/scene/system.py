@@ -9,11 +9,11 @@ from time import perf_counter
 
 import numpy as np
 
-from rodsim.elasticity import ENERGIES, energies, first_half_turn, point_loads
-from rodsim.fluid import BLOBS, velocity_kernel
-from rodsim.rods.state import Scene, State
-from rodsim.rotations import displace
-from rodsim.stages import stage_loop, to_increments
+from rodsim.compiled.rotations import displace
+from rodsim.flows.velocity import BLOBS, velocity_kernel
+from rodsim.forces.elasticity import ENERGIES, energies, first_half_turn, point_loads
+from rodsim.scene.loop import stage_loop, to_increments
+from rodsim.scene.state import Scene, State
 
 NO_STAGES, NOTHING = np.zeros((1, 5)), np.zeros(0)
 
@@ -64,7 +64,7 @@ class RodSystem:
     def run_stages(
         self, t, base, Y, out, table=NO_STAGES, begin=1, end=1, size=0.0, f0=NOTHING, g=NOTHING
     ):
-        """Run stages of a recurrence, see :func:`rodsim.stages.stage_loop`, then evaluate.
+        """Run stages of a recurrence, see :func:`rodsim.scene.loop.stage_loop`, then evaluate.
 
         The evaluation at Y_j is at time t + c_j h, with c in the last column of ``table``. Returns
         how many were made: of a driven scene, as many as there is room for strain twist, the last

@@ -5,11 +5,11 @@ from functools import lru_cache
 import numpy as np
 from numba import get_num_threads
 
-from rodsim.elasticity import point_loads
-from rodsim.fluid.blobs import ALGEBRAIC7
-from rodsim.fluid.sums import FLOW_7, FLOW_9, PLANAR_7, PLANAR_9, SPATIAL_7, SPATIAL_9
-from rodsim.jit import MAT, SYSTEM, TRIADS, VEC, inline, kernel
-from rodsim.rotations import displace, rotation_vector_rate
+from rodsim.compiled.flags import MAT, SYSTEM, TRIADS, VEC, inline, kernel
+from rodsim.compiled.rotations import displace, rotation_vector_rate
+from rodsim.flows.blobs import ALGEBRAIC7
+from rodsim.flows.free import FLOW_7, FLOW_9, PLANAR_7, PLANAR_9, SPATIAL_7, SPATIAL_9
+from rodsim.forces.elasticity import point_loads
 
 
 @kernel(f"void({VEC}, {VEC})")

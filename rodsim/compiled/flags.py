@@ -17,7 +17,7 @@ import numba
 import numpy as np
 from numba import njit
 
-from rodsim.settings import load_tbb
+from rodsim.compiled.settings import load_tbb
 
 # A function from the cache can hold parallel code without Numba knowing it: the threading layer
 # must be there before it is loaded, or LLVM ends the process: "Symbol not found: allocate_sched".

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from rodsim.jit import BASE, VEC, inline, kernel, part
+from rodsim.compiled.flags import BASE, VEC, inline, kernel, part
 
 SERIES_UP_TO = 1.0  # squared angle: there the next terms of the series are below 1e-19
 
@@ -76,7 +76,7 @@ def rotate(theta, D, out):
 def displace(base, y, out):
     """Write the state with increments ``y`` from ``base``: (position, director, tracer) each.
 
-    y: (X - X_n, theta, tracer - tracer_n), flat, 6 N + 3 P long; see :mod:`rodsim.dynamics`.
+    y: (X - X_n, theta, tracer - tracer_n), flat, 6 N + 3 P long; see :mod:`rodsim.scene.system`.
     """
     n, markers = base[0].shape[1], base[2].shape[1]
     _add(base[0], y[: 3 * n].reshape(3, n), out[0])

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from rodsim.errors import FileError
-from rodsim.recorder import frame_times
-from rodsim.rods import build_scene
+from rodsim.run.recorder import frame_times
+from rodsim.scene.build import build_scene
 
 
 def describe_case(case, refuse=False) -> str:
@@ -12,8 +12,8 @@ def describe_case(case, refuse=False) -> str:
 
     ``refuse`` : raise CaseError for what a run would refuse, a fixed step above its limit.
     """
-    from rodsim.dynamics import RodSystem
     from rodsim.integrators.limits import check_step, stability
+    from rodsim.scene.system import RodSystem
 
     scene = build_scene(case)
     unit = case.units

@@ -16,8 +16,8 @@ from pathlib import Path
 from time import perf_counter
 from zlib import crc32
 
+from rodsim.compiled.settings import fingerprint
 from rodsim.processes import this_rodsim
-from rodsim.settings import fingerprint
 
 LIST = "compiled.json"
 
@@ -44,7 +44,7 @@ def ensure_compiled(case, say) -> float:
         if not is_compiled(folder, kind):
             if _is_ours(folder, kind) and not _undamaged(folder):
                 _clear(folder)
-            command = [*this_rodsim("rodsim.warmup"), *variant]
+            command = [*this_rodsim("rodsim.run.warmup"), *variant]
             if subprocess.run(command, capture_output=True, check=False).returncode == 0:
                 note_compiled(folder, kind)
     return perf_counter() - start
@@ -109,14 +109,14 @@ def _alone(folder):
 
 def main(blob: str, planar: str, tracers: str) -> None:
     """Fill the cache with the kernels of one kind of scene."""
-    from rodsim.settings import prepare
+    from rodsim.compiled.settings import prepare
 
     prepare()
     import numpy as np
 
-    import rodsim.machine  # noqa: F401  (importing it compiles everything but the sums)
-    from rodsim.fluid import BLOBS, velocity_kernel
-    from rodsim.stages import stage_loop
+    import rodsim.run.machine  # noqa: F401  (importing it compiles everything but the sums)
+    from rodsim.flows.velocity import BLOBS, velocity_kernel
+    from rodsim.scene.loop import stage_loop
 
     stage_loop(BLOBS[blob], planar == "1", tracers == "1")
     points, loads, out = np.zeros((3, 2)), np.zeros((6, 2)), np.zeros((6, 2))

@@ -21,8 +21,8 @@ import math
 
 import numpy as np
 
-from rodsim.jit import MAT, ONE, RODS, TRIADS, VEC, inline, kernel, part
-from rodsim.rods.state import HALF_TURN
+from rodsim.compiled.constants import HALF_TURN
+from rodsim.compiled.flags import MAT, ONE, RODS, TRIADS, VEC, inline, kernel, part
 
 ENERGIES = ("bending_energy", "twisting_energy", "shear_energy", "stretch_energy")
 

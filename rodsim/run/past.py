@@ -15,10 +15,10 @@ from rodsim.case import Case, case_from_mapping
 from rodsim.case.words import shown
 from rodsim.errors import CaseError, FileError, Problem
 from rodsim.output import CaseText, Trajectory, open_trajectory
-from rodsim.output.again import extend, note_resume, reopen
 from rodsim.output.paths import OutputLock
-from rodsim.recorder import frame_times, plan_output
-from rodsim.rods.state import State
+from rodsim.output.reopen import extend, note_resume, reopen
+from rodsim.run.recorder import frame_times, plan_output
+from rodsim.scene.state import State
 
 ALLOWED = (
     "a run that goes on can have a later time.end and more output.fields, nothing else; "

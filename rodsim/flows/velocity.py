@@ -1,14 +1,14 @@
 """Velocity, angular velocity and pressure of the fluid from point forces and torques.
 
 For notebooks and tests: arrays are (n, 3), one row per point. A run calls the kernels of
-``sums.py`` on its own (3, n) arrays.
+``free.py`` on its own (3, n) arrays.
 """
 
 import numpy as np
 
 from rodsim.errors import UsageError
-from rodsim.fluid.blobs import BLOBS
-from rodsim.fluid.sums import pressure_kernel, velocity_kernel
+from rodsim.flows.blobs import BLOBS
+from rodsim.flows.free import pressure_kernel, velocity_kernel
 
 __all__ = ["BLOBS", "pressure", "pressure_kernel", "velocity", "velocity_kernel"]
 

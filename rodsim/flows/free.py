@@ -22,14 +22,14 @@ from functools import lru_cache
 
 from numba import prange
 
-from rodsim.fluid.blobs import (
+from rodsim.compiled.flags import parallel_kernel
+from rodsim.flows.blobs import (
     ALGEBRAIC7,
     ALGEBRAIC9,
     dipole_scalars,
     inverse_distance,
     stokeslet_scalars,
 )
-from rodsim.jit import parallel_kernel
 
 EIGHT_PI = 8.0 * math.pi
 

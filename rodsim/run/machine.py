@@ -2,12 +2,12 @@
 
 from functools import cached_property
 
-from rodsim.dynamics import RodSystem
+from rodsim.compiled.threads import threads_for
 from rodsim.integrators import make_integrator
 from rodsim.integrators.limits import Limits, check_step, stability
 from rodsim.integrators.spectral import SpectralRadius
-from rodsim.threads import threads_for
-from rodsim.watch import Watch
+from rodsim.run.watch import Watch
+from rodsim.scene.system import RodSystem
 
 
 class Machine:

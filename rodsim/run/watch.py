@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 
+from rodsim.compiled.flags import MAT, TRIADS, kernel
 from rodsim.errors import DivergedError, StepFailure
 from rodsim.integrators.fixed import FixedStep
 from rodsim.integrators.limits import RateWatch
 from rodsim.integrators.step import Step
-from rodsim.jit import MAT, TRIADS, kernel
-from rodsim.rods.state import State
+from rodsim.scene.state import State
 
 FARTHEST = 1e3  # lengths of the scene: no rod drives itself that far in a run that works
 

@@ -9,7 +9,6 @@ import numpy as np
 TRAVEL_TIMES = np.append((np.arange(6) / 6) ** 2, 1.0)  # of a step
 TRAVEL_SEGMENTS = 100  # of a rod, evenly spread, that are looked at
 LARGEST_BLOCK = 1_000_000  # numbers of strain twist evaluated ahead
-HALF_TURN = 4e-14  # 1 + tr A of neighbouring triads below this has lost every digit
 
 
 @dataclass

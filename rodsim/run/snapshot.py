@@ -7,7 +7,7 @@ the counters and the clock. A run that is restored from it goes on with the same
 import numpy as np
 
 from rodsim.errors import FileError
-from rodsim.rods.state import State
+from rodsim.scene.state import State
 
 
 def capture(machine, recorder, state: State) -> dict:

@@ -5,13 +5,12 @@ from pathlib import Path
 import numpy as np
 
 from rodsim.case import check_strain_twist, spacings_differ
+from rodsim.compiled.constants import HALF_TURN
 from rodsim.errors import CaseError, FileError
-from rodsim.rods.shapes import FORMULAS, place
-from rodsim.rods.state import HALF_TURN, Rods, Scene, State, StrainTwist
-from rodsim.rods.stored import read_shape
-from rodsim.rods.tracers import tube
-
-__all__ = ["Rods", "Scene", "State", "StrainTwist", "build_scene"]
+from rodsim.scene.shapes import FORMULAS, place
+from rodsim.scene.state import Rods, Scene, State, StrainTwist
+from rodsim.scene.stored import read_shape
+from rodsim.scene.tracers import tube
 
 PLANE_TOLERANCE = 1e-12  # of the rod's length, as the case file's contract has it
 

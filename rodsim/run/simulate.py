@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 from time import perf_counter
 
 from rodsim.case import Case
-from rodsim.continuation import open_past
 from rodsim.errors import DivergedError, FileError, StepFailure, StoppedError, UsageError
 from rodsim.output import TrajectoryWriter
 from rodsim.progress import Silent
-from rodsim.recorder import Recorder, plan_output
-from rodsim.rods import build_scene
-from rodsim.snapshot import capture, restore
+from rodsim.run.past import open_past
+from rodsim.run.recorder import Recorder, plan_output
+from rodsim.run.snapshot import capture, restore
+from rodsim.scene.build import build_scene
 
 
 @dataclass
@@ -130,7 +130,7 @@ def _refuse_sources(case, output):
 def _compile(case, scene, force):
     """Import what is compiled only now: who does not run, does not wait for it."""
     begin = perf_counter()
-    from rodsim.machine import Machine
+    from rodsim.run.machine import Machine
 
     return Machine(case, scene, force), perf_counter() - begin
 

@@ -12,7 +12,7 @@ H1 -> 1/r, H2 -> 1/r^3, Q -> 2/r^3, D1 -> -2/r^3, D2 -> 6/r^5.
 
 import math
 
-from rodsim.jit import inline
+from rodsim.compiled.flags import inline
 
 ALGEBRAIC7 = 7
 ALGEBRAIC9 = 9

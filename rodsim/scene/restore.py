@@ -8,7 +8,8 @@ import numpy as np
 
 from rodsim.case import case_from_mapping
 from rodsim.errors import CaseError, FileError
-from rodsim.rods import Rods, Scene, State, StrainTwist, _epsilon
+from rodsim.scene.build import _epsilon
+from rodsim.scene.state import Rods, Scene, State, StrainTwist
 
 
 def restore_scene(run) -> Scene:

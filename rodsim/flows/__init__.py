@@ -1,0 +1,1 @@
+"""What moves rods: each flow is one file."""

@@ -1,0 +1,1 @@
+"""What acts on rods: each force is one file."""

@@ -1,0 +1,1 @@
+"""A run: start, resume, march, record, watch, stop."""
