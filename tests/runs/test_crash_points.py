@@ -61,7 +61,7 @@ def logging(monkeypatch, log):
     with monkeypatch.context() as patch:
         patch.setattr(build, "descriptor", lambda file: streams[-1].fileno())
         patch.setattr(build, "h5py", Fake())
-        patch.setattr(again, "h5py", Fake())
+        patch.setattr(reopen, "h5py", Fake())
         yield
     for stream in streams:
         stream.close()
