@@ -25,6 +25,7 @@ from rodsim.case.fields import (
     number_tag,
     quantity,
 )
+from rodsim.case.methods import METHODS, Method
 from rodsim.case.shapes import Shape
 from rodsim.case.source import Source
 from rodsim.errors import Problem
@@ -110,7 +111,7 @@ class Time(Model):
     """How long, and by which method."""
 
     end: Positive = quantity("time", "simulated time of the last frame; the first is at 0")
-    integrator: Literal["rkc", "rk4", "euler"] = Field("rkc", description="rkc is adaptive")
+    integrator: Literal[tuple(METHODS)] = Field("rkc", description="rkc is adaptive")
     tolerance: float = Field(
         1e-4,
         strict=True,
@@ -126,6 +127,11 @@ class Time(Model):
         default=None,
     )
     step: Positive | None = quantity("time", "euler, rk4: the step", default=None)
+
+    @property
+    def method(self) -> Method:
+        """What is known of the method."""
+        return METHODS[self.integrator]
 
 
 def _distinct_with_position(names: tuple[str, ...]) -> tuple[str, ...]:
@@ -193,7 +199,7 @@ class Case(Model):
         if self.output.interval is not None:
             return self.output.interval
         share = self.time.end / DEFAULT_FRAMES
-        if self.time.integrator == "rkc" or self.time.step is None:
+        if self.time.method.adaptive or self.time.step is None:
             return share
         return max(1.0, float(np.ceil(share / self.time.step * (1.0 - 1e-9)))) * self.time.step
 
@@ -211,7 +217,7 @@ class Case(Model):
         """Longest step of rkc: over a drive that changes in time, it passes in small parts."""
         if self.time.max_step is not None:
             return self.time.max_step
-        return self.interval if any(rod.driven for rod in self.rods.values()) else math.inf
+        return self.interval if _driven(self) else math.inf
 
     def problem(self, key_path: str | tuple, reason: str) -> Problem:
         """Return a Problem at a key, with its file:line, value and unit, for later checks."""
@@ -225,9 +231,20 @@ class Case(Model):
         """
         data = _plain(self)
         data["output"]["interval"] = self.interval
-        if self.time.integrator != "rkc":
+        if not self.time.method.adaptive:
             del data["time"]["tolerance"]
         return data
+
+
+def _driven(value: Any) -> bool:
+    """Tell whether anything in a model depends on time."""
+    if isinstance(value, Expression):
+        return value.uses_t
+    if isinstance(value, BaseModel):
+        value = {name: getattr(value, name) for name in type(value).model_fields}
+    if isinstance(value, dict):
+        value = tuple(value.values())
+    return isinstance(value, tuple) and any(map(_driven, value))
 
 
 def _plain(value: Any) -> Any:
