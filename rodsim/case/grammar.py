@@ -118,7 +118,9 @@ class _Reader:
             raise ExpressionError("not an expression: something is missing at its end")
         self._reduce(0)
         if self.waiting:
-            raise ExpressionError("not an expression: a '(' is not closed")
+            raise ExpressionError(
+                "not an expression: a '(' is not closed (has it commas? then it needs quotes)"
+            )
         return _ending_with(self.graph, self.operands[0][0])
 
     def _number(self, word: str, following: str) -> None:
