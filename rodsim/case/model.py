@@ -83,6 +83,17 @@ def _pair(value: float | tuple[float, float]) -> tuple[float, float]:
 class Rod(Model):
     """One elastic rod."""
 
+    like: Name | None = Field(
+        None,
+        description="another rod that says what is left out here: mappings are merged, lists and "
+        "values replaced, null takes a key out",
+    )
+    repeat: Count | None = Field(
+        None, description="make NAME_0, NAME_1, ...: so many, with the number as i in expressions"
+    )
+    parameters: dict[ParameterName, Number] = Field(
+        {}, description="names for its expressions; they replace those of the case or add to them"
+    )
     shape: Shape = Field(description="how it starts")
     moduli: Moduli = Field(description="elastic moduli")
     strain_twist: tuple[NumberOrExpression, NumberOrExpression, NumberOrExpression] = quantity(
@@ -231,6 +242,9 @@ class Case(Model):
         """
         data = _plain(self)
         data["output"]["interval"] = self.interval
+        for rod in data["rods"].values():
+            if not rod["parameters"]:  # as in files from before rods had any
+                del rod["parameters"]
         if not self.time.method.adaptive:
             del data["time"]["tolerance"]
         return data
