@@ -16,7 +16,10 @@ from typing import Any
 
 KINDS = (
     "rodsim.forces.elastic",
+    "rodsim.forces.loads",
+    "rodsim.forces.tethers",
     "rodsim.flows.fluid",
+    "rodsim.flows.background",
 )
 
 
@@ -24,18 +27,19 @@ KINDS = (
 class Kind:
     """A kind of part.
 
-    build : called with (case, rods, :class:`rodsim.scene.state.Frame`), returns its parts in that
-    scene, none where the case does not ask for it. word : its key in the case file, in the section
-    ``where`` (``case``, ``fluid`` or ``rod``). words : the type of what stands there, ``default``
-    what is meant where nothing does, ``about`` its line in the schema. check : called with a case,
-    yields (path, reason) of what is wrong across sections.
+    build : called with (case, scene), returns its parts in that scene, none where the case does not
+    ask for it. Raises CaseError.
+    word : its key in the case file, in the section ``where`` (Case, Fluid or Rod). words : the type
+    of what stands there. dimension, about : of the schema.
+    check : called with a case, sections of which may be None, yields (path, reason) of what is
+    wrong across sections.
     """
 
     build: Callable
     word: str = ""
     where: str = ""
     words: Any = None
-    default: Any = None
+    dimension: str = ""
     about: str = ""
     check: Callable | None = None
 
@@ -45,3 +49,22 @@ def kinds() -> tuple[Kind, ...]:
     """Return all kinds, the user's own last."""
     own = [name.strip() for name in os.environ.get("RODSIM_PARTS", "").split(",")]
     return tuple(import_module(name).KIND for name in (*KINDS, *filter(None, own)))
+
+
+def with_words(model: type) -> type:
+    """Return a model of the case file with the words of all kinds that belong there.
+
+    A word that is left out is None, and leaves the resolved case as it would be without the kind.
+    """
+    from pydantic import Field, create_model
+
+    fields = {
+        kind.word: (
+            kind.words | None,
+            Field(None, description=kind.about, json_schema_extra={"dimension": kind.dimension}),
+        )
+        for kind in kinds()
+        if kind.where == model.__name__
+    }
+    names = {"__module__": model.__module__, "__doc__": model.__doc__}
+    return create_model(model.__name__, __base__=model, **names, **fields)

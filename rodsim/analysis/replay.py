@@ -43,7 +43,8 @@ class Sources:
         """Return the pressure (n,) at points (n, 3), the sum of what the parts have of it."""
         points = np.ascontiguousarray(np.asarray(points, float).T)
         given = (part.pressure for part in self.scene.parts if part.pressure)
-        return sum(pressure(points, self.position, self.loads) for pressure in given)
+        sources = points, self.position, self.loads, self.time
+        return sum(pressure(*sources) for pressure in given)
 
     def towards(self, other: Sources, share: float) -> Sources:
         """Return the sources a share of the way from these to others, along straight lines."""

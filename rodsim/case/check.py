@@ -16,6 +16,7 @@ from rodsim.case.fields import BYTES_PER_POINT, MOST_POINTS
 from rodsim.case.model import Case, Rod, Spacings, Time, Tube
 from rodsim.case.words import did_you_mean
 from rodsim.case.yaml_text import Path
+from rodsim.registry import kinds
 
 Finding = tuple[Path, str]
 MOST_FRAMES = 10_000_000
@@ -33,6 +34,8 @@ def check(case: Case, rod_names: Iterable[str]) -> tuple[list[Finding], list[Fin
     ``rod_names`` are all rods of the file, also those that did not validate.
     """
     errors = [*_rods(case), *_tracers(case, list(rod_names))]
+    for kind in kinds():
+        errors += kind.check(case) if kind.check else ()
     warnings: list[Finding] = [*_thin(case)]
     if case.time is not None:
         errors += _step_missing(case.time)

@@ -16,7 +16,7 @@ import numpy as np
 from rodsim.case.derivatives import differentiate
 from rodsim.case.functions import FUNCTIONS
 from rodsim.case.grammar import ExpressionError, parse
-from rodsim.case.graph import Program, bound
+from rodsim.case.graph import Graph, Program, bound
 from rodsim.case.words import clipped, did_you_mean, one_of
 
 __all__ = ["FUNCTIONS", "RESERVED", "Expression", "ExpressionError", "evaluate", "names_in"]
@@ -79,6 +79,10 @@ class Expression:
         slope._by = (*self._by, variable)
         slope._take(*differentiate(self._graph, self._root, variable))
         return slope
+
+    def add_to(self, graph: Graph) -> int:
+        """Add what it computes to a graph, return its node there."""
+        return graph.absorb(self._graph, self._root)
 
     @property
     def uses_s(self) -> bool:

@@ -28,6 +28,8 @@ DIMENSIONS = {  # exponents of (mass, length, time)
     "density": (1, -3, 0),
     "bending": (1, 3, -2),
     "force": (1, 1, -2),
+    "stiffness": (1, 0, -2),
+    "velocity": (0, 1, -1),
     "curvature": (0, -1, 0),
 }
 ANGLES = {"angle": "rad", "degrees": "degree"}
@@ -55,7 +57,7 @@ def no_larger_than_memory(points: int) -> int:
     return points
 
 
-def not_empty(entries: tuple) -> tuple:
+def not_empty(entries: Any) -> Any:
     """Return the entries; raise ValueError if there are none."""
     if not entries:
         raise ValueError("must not be empty")
@@ -150,11 +152,16 @@ def number_tag(value: Any) -> str:
     return "<number>" if tag == "<text>" else tag
 
 
+def number_or(expression: Any) -> Any:
+    """Return the type of a key that is a number or an expression of some variables."""
+    return Annotated[
+        Annotated[Number, Tag("<number>")] | Annotated[expression, Tag("<text>")],
+        Discriminator(tag_of),
+    ]
+
+
 ExpressionText = expression_in("s", "t")
-NumberOrExpression = Annotated[
-    Annotated[Number, Tag("<number>")] | Annotated[ExpressionText, Tag("<text>")],
-    Discriminator(tag_of),
-]
+NumberOrExpression = number_or(ExpressionText)
 NumberOrPair = Annotated[
     Annotated[Positive, Tag("<number>")] | Annotated[tuple[Positive, Positive], Tag("<list>")],
     Discriminator(number_tag),

@@ -52,6 +52,19 @@ class Graph:
         """Return the number a node stands for, or None where it depends on a variable."""
         return self.nodes[node].value
 
+    def absorb(self, other: Graph, root: int) -> int:
+        """Return the node that stands here for one of another graph, with all that it needs."""
+        new = {}
+        for index in needed(other.nodes, root):
+            node = other.nodes[index]
+            if node.value is not None:
+                new[index] = self.constant(node.value)
+            elif node.operation:
+                new[index] = self.apply(node.operation, *(new[a] for a in node.arguments))
+            else:
+                new[index] = self.name(node.name)
+        return new[root]
+
     def copy(self) -> Graph:
         """Return a graph of its own with the same nodes."""
         return Graph(list(self.nodes), dict(self._known))

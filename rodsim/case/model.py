@@ -29,6 +29,7 @@ from rodsim.case.methods import METHODS, Method
 from rodsim.case.shapes import Shape
 from rodsim.case.source import Source
 from rodsim.errors import Problem
+from rodsim.registry import with_words
 
 DEFAULT_FRAMES = 100
 FieldName = Literal["position", "director", "velocity", "angular_velocity", "force", "torque"]
@@ -60,6 +61,9 @@ class Fluid(Model):
     density: Positive | None = quantity(
         "density", "only where kinetic energy is wanted", default=None
     )
+
+
+Fluid = with_words(Fluid)
 
 
 class Moduli(Model):
@@ -106,6 +110,9 @@ class Rod(Model):
     def driven(self) -> bool:
         """Whether its strain twist depends on time."""
         return any(isinstance(entry, Expression) and entry.uses_t for entry in self.strain_twist)
+
+
+Rod = with_words(Rod)
 
 
 class Tube(Model):
@@ -248,6 +255,9 @@ class Case(Model):
         if not self.time.method.adaptive:
             del data["time"]["tolerance"]
         return data
+
+
+Case = with_words(Case)
 
 
 def _driven(value: Any) -> bool:

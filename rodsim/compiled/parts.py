@@ -25,8 +25,8 @@ class Part:
     of the part, unless that is kept in an energy of its own (``potential``).
     observe : called with (state, row, scene), returns observables by name.
     series : those beyond the ones of every scene, (name, shape, dimension) each.
-    pressure : called with (points (3, T), sources (3, N), loads (6, N)), returns its share of the
-    pressure (T,).
+    pressure : called with (points (3, T), sources (3, N), loads (6, N), t), returns its share of
+    the pressure (T,).
     """
 
     name: str

@@ -39,10 +39,10 @@ class Entry:
 class Row:
     """Numbers (size,) of a part at any time. What does not depend on t is evaluated once.
 
-    Places that no entry names stay 0.
+    Places that no entry names stay 0. ``watched``: entries of which only the travel is asked.
     """
 
-    def __init__(self, size: int, entries=()):
+    def __init__(self, size: int, entries=(), watched=()):
         self.size = size
         self._steady = np.zeros(size)
         for entry in entries:
@@ -50,7 +50,7 @@ class Row:
                 self._steady[entry.places] = _values(entry.value, entry.s, 0.0)
         self._driven = [entry for entry in entries if entry.driven]
         self._groups: dict = {}
-        for entry in self._driven:
+        for entry in watched or self._driven:
             self._groups.setdefault(entry.group, []).append(entry)
 
     @property

@@ -18,7 +18,7 @@ def fluid_parts(scene) -> list[Part]:
 
 
 def _pressure(scene):
-    def pressure(points, sources, loads):
+    def pressure(points, sources, loads, t):
         """Return the pressure (T,) at points (3, T), eq. (62)."""
         from rodsim.flows.blobs import BLOBS
         from rodsim.flows.free import pressure_kernel
