@@ -1,4 +1,4 @@
-"""The blobs (12) and (13) and the scalars of their regularized Stokeslet, rotlet, dipole and images.
+"""The blobs (12), (13) and the scalars of their regularized Stokeslets, rotlets, dipoles, images.
 
 With r the distance, R^2 = r^2 + eps^2 and p = eps^2/R^2, everything below is without 1/(8 pi):
 

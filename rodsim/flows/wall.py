@@ -2,19 +2,23 @@
 
 Each source has an image below the wall (Blake 1971; regularized by Ainley et al. 2008 for
 algebraic7, here for both blobs: docs/method.md). With z and h the heights of target and source
-above the wall, r = x - X, r* = x - X*, X* the mirror image of X, and the scalars with a star taken at
-R*^2 = R^2 + 4 z h; with g° and m° the vectors g and m with their third component reversed:
+above the wall, r = x - X, r* = x - X*, X* the mirror image of X, a star on a scalar for its value
+at R*^2 = R^2 + 4 z h, and g', m' for g, m with the third component reversed:
 
-    v = E* a + P* (a.r*) r*,   a = h g° + m x e3
-    mu u = (H1 - H1* - 2 z h H2*) g + (H2 - H2*) (g.r) r + 1/2 (Q - Q*) m x r - 2 z v - z h E1* m° x r*
-    mu w = 1/2 (Q - Q*) g x r - 2 e3 x v - z h E1* r* x g° + what m adds
+    v = E* a + P* (a.r*) r*,   a = h g' + m x e3
+    mu u = (H1 - H1* - 2 z h H2*) g + (H2 - H2*) (g.r) r + 1/2 (Q - Q*) m x r
+           - 2 z v - z h E1* m' x r*
+    mu w = 1/2 (Q - Q*) g x r - 2 e3 x v - z h E1* r* x g' + 1/4 D1 m + 1/4 D2 (m.r) r
+           + kappa [(m'.r*) r* - r*^2 m'] - 1/2 Q* m - z h E1* m' + (E* - 1/2 (z + h)^2 E1*) m_p
+           + 1/2 E1* [(m.q) q + z (m.r_p) e3 - h m_3 r_p]
     p    = (Q - Q*) (g.r) + 2 (z + h) (E1* - 2 P*) (a.r*)
 
-summed over the sources. On the wall R* = R, and every term of u is exactly 0. The 6 x 6 mobility of
-two points is symmetric. Heights below 0 give smooth, meaningless numbers: callers keep them out.
+summed over the sources, with kappa = 1/4 (2 z h E2* - 2 P* + E1*), r_p and m_p the parts of r and m
+along the wall, q = e3 x r. On the wall R* = R: every term of u is exactly 0. The mobility of two
+points is symmetric. Heights below 0 give smooth, meaningless numbers: callers keep them out.
 
-The kernels are those of ``free.py`` with ``wall_height`` before ``out``, to which they add; threads and
-variants are as there. Two passes over the sources, first all distances of a target and then its
+The kernels are those of ``free.py`` with ``wall_height`` before ``out``, to which they add; threads
+and variants are as there. Two passes over the sources, first all distances of a target and then its
 sum, are faster than one (docs/notes/performance.md).
 """
 
