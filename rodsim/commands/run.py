@@ -5,7 +5,6 @@ from pathlib import Path
 import click
 
 from rodsim.commands.common import (
-    announce,
     case_argument,
     load,
     max_wall_option,
@@ -13,7 +12,6 @@ from rodsim.commands.common import (
     say_warnings,
     set_option,
     threads_option,
-    warn,
 )
 
 
@@ -36,38 +34,16 @@ from rodsim.commands.common import (
 @click.option("-q", "--quiet", is_flag=True, help="No progress and no summary.")
 def run(case_path, output, overrides, threads, max_wall, overwrite, force, dry_run, quiet):
     """Run a case and write its trajectory, energies and balances to an HDF5 file."""
-    from rodsim.commands import reports
-    from rodsim.run.stopping import Stopper
-
-    stop = Stopper(max_wall)
     case = load(case_path, overrides)
     say_warnings(case)
     prepare_numba()
     if dry_run:
+        from rodsim.commands import reports
+
         click.echo(reports.describe_case(case, refuse=not force))
         return
-    from rodsim.progress import make_progress
-    from rodsim.run.warmup import ensure_compiled
+    from rodsim.commands.console import Console
+    from rodsim.run.simulate import simulate
 
-    compiled = ensure_compiled(case, lambda line: quiet or click.echo(line, err=True))
-    from rodsim.run.simulate import Summary, simulate
-
-    def inform(limits):
-        if not quiet:
-            click.echo("\n".join(reports.describe_limits(limits, case.units.time)), err=True)
-
-    summary = Summary(compile_seconds=compiled)
-    label = case.title or case_path.name
-    with announce(summary, output, quiet), stop, make_progress(label, quiet) as progress:
-        simulate(
-            case,
-            output,
-            overwrite=overwrite,
-            threads=threads,
-            force=force,
-            stop=stop,
-            notify=warn,
-            inform=inform,
-            progress=progress,
-            summary=summary,
-        )
+    with Console(output, quiet, max_wall).about(case, case_path.name) as console:
+        simulate(case, output, overwrite=overwrite, threads=threads, force=force, listener=console)

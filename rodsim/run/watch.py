@@ -6,7 +6,6 @@ import numpy as np
 
 from rodsim.compiled.flags import MAT, TRIADS, kernel
 from rodsim.errors import DivergedError, StepFailure
-from rodsim.integrators.fixed import FixedStep
 from rodsim.integrators.limits import RateWatch
 from rodsim.integrators.step import Step
 from rodsim.scene.state import State
@@ -49,7 +48,7 @@ class Watch:
     def __init__(self, case, system, integrator, radius=None):
         """``radius``: the SpectralRadius that follows the rate of a fixed step, or None."""
         self.system = system
-        fixed = isinstance(integrator, FixedStep)
+        fixed = not integrator.method.adaptive
         self.remedy = _fixed_step_remedy(case) if fixed else _adaptive_remedy(case)
         self._rates = RateWatch(system, integrator, radius) if fixed and radius else None
         initial = system.scene.initial.position
