@@ -29,6 +29,7 @@ import numpy as np
 from numba import prange
 
 from rodsim.compiled.flags import inline, parallel_kernel
+from rodsim.compiled.kernels import part
 from rodsim.flows.blobs import (
     ALGEBRAIC7,
     ALGEBRAIC9,
@@ -149,6 +150,55 @@ def velocity_kernel(blob, planar=False, angular=True):
     if planar:
         return PLANAR_7 if blob == ALGEBRAIC7 else PLANAR_9
     return SPATIAL_7 if blob == ALGEBRAIC7 else SPATIAL_9
+
+
+def _rods_part(blob, planar):
+    """Make the part that moves the rods; ``fixed`` is (epsilon, viscosity, wall height)."""
+    seven = blob == ALGEBRAIC7
+
+    @part
+    def move_rods(row, fixed, rods, state, loads, velocities):
+        points, out = state[0], velocities[0]
+        epsilon, viscosity, height = fixed[0], fixed[1], fixed[2]
+        for k in range(points.shape[1]):
+            if points[2, k] <= height:
+                out[:] = np.nan  # no fluid there: the step is rejected
+                return
+        if planar:
+            if seven:
+                PLANAR_7(points, points, loads, epsilon, viscosity, height, out)
+            else:
+                PLANAR_9(points, points, loads, epsilon, viscosity, height, out)
+        elif seven:
+            SPATIAL_7(points, points, loads, epsilon, viscosity, height, out)
+        else:
+            SPATIAL_9(points, points, loads, epsilon, viscosity, height, out)
+
+    return move_rods
+
+
+def _tracers_part(blob):
+    """Make the part that moves tracers; those below the wall are nowhere: NaN."""
+    seven = blob == ALGEBRAIC7
+
+    @part
+    def move_tracers(row, fixed, rods, state, loads, velocities):
+        points, out = state[2], velocities[1]
+        epsilon, viscosity, height = fixed[0], fixed[1], fixed[2]
+        if seven:
+            FLOW_7(points, state[0], loads, epsilon, viscosity, height, out)
+        else:
+            FLOW_9(points, state[0], loads, epsilon, viscosity, height, out)
+        for i in range(points.shape[1]):
+            if points[2, i] < height:
+                out[:, i] = np.nan
+
+    return move_tracers
+
+
+spatial_7, spatial_9 = (_rods_part(blob, False) for blob in (ALGEBRAIC7, ALGEBRAIC9))
+planar_7, planar_9 = (_rods_part(blob, True) for blob in (ALGEBRAIC7, ALGEBRAIC9))
+tracers_7, tracers_9 = (_tracers_part(blob) for blob in (ALGEBRAIC7, ALGEBRAIC9))
 
 
 @lru_cache
