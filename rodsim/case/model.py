@@ -7,7 +7,17 @@ import os
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, Discriminator, Field, PrivateAttr, Tag
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    Discriminator,
+    Field,
+    PrivateAttr,
+    Tag,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 
 from rodsim.case.expressions import Expression
 from rodsim.case.fields import (
@@ -25,20 +35,34 @@ from rodsim.case.fields import (
     number_tag,
     quantity,
 )
+from rodsim.case.materials import WIDTHS, Material, Radius
 from rodsim.case.shapes import Shape
-from rodsim.case.source import Source
+from rodsim.case.source import Source, child
 from rodsim.errors import Problem
+from rodsim.units import mass_name
 
 DEFAULT_FRAMES = 100
 FieldName = Literal["position", "director", "velocity", "angular_velocity", "force", "torque"]
 
 
 class Units(Model):
-    """Names of the units; the computation uses the plain numbers."""
+    """Names of the units; the computation uses the plain numbers. ``force`` may replace mass."""
 
     length: UnitName = Field("um", description="unit of length")
     mass: UnitName = Field("g", description="unit of mass")
     time: UnitName = Field("s", description="unit of time")
+    force: UnitName | None = Field(None, description="unit of force, in place of that of mass")
+
+    @model_validator(mode="after")
+    def _mass_or_force(self):
+        if self.force is not None and "mass" in self.model_fields_set:
+            raise ValueError("give mass or force, not both: each follows from the other")
+        return self
+
+    @property
+    def names(self) -> dict[str, str]:
+        """Names of the units of length, mass and time; of mass it may be that of a product."""
+        return {**self.model_dump(include={"length", "time"}), "mass": mass_name(self.model_dump())}
 
 
 class Spacings(Model):
@@ -53,15 +77,25 @@ class Fluid(Model):
     viscosity: Positive = quantity("viscosity", "dynamic viscosity")
     blob: Literal["algebraic7", "algebraic9"] = Field("algebraic7", description="eq. 12 or eq. 13")
     epsilon: Annotated[
-        Annotated[Positive, Tag("<number>")] | Annotated[Spacings, Tag("<mapping>")],
-        Discriminator(number_tag),
-    ] = quantity("length", "width of the blob: a length, or {spacings: n}")
+        Annotated[Positive, Tag("<number>")]
+        | Annotated[Spacings, Tag("<mapping>")]
+        | Annotated[Radius, Tag("<radius>")],
+        Discriminator(lambda value: "<radius>" if child(value, "radius") else number_tag(value)),
+    ] = quantity("length", "width of the blob: a length, {spacings: n}, or {radius: r}")
     density: Positive | None = quantity(
         "density", "only where kinetic energy is wanted", default=None
     )
 
+    @field_validator("epsilon", mode="after")
+    @classmethod
+    def _width(cls, epsilon: Any, info: ValidationInfo) -> Any:
+        """Return a radius as the width of the blob that moves like it."""
+        if not isinstance(epsilon, Radius):
+            return epsilon
+        return epsilon.radius * WIDTHS[info.data.get("blob", "algebraic7")]
 
-class Moduli(Model):
+
+class Moduli(Material):
     """Elastic moduli; bending and shear may differ along D1 and D2."""
 
     bending: NumberOrPair = quantity("bending", "a1 = a2, or [a1, a2]")
@@ -236,6 +270,8 @@ class Case(Model):
         """
         data = _plain(self)
         data["output"]["interval"] = self.interval
+        if self.units.force is not None:
+            del data["units"]["mass"]
         for rod in data["rods"].values():
             if not rod["parameters"]:  # as in files from before rods had any
                 del rod["parameters"]
