@@ -54,7 +54,9 @@ TAIL = """## Expressions
 Any number may be an expression of `pi` and the names in `parameters`, the entries of `strain_twist`
 of the arc length `s` and the time `t` as well, with `+ - * / ** %`, the comparisons `< <= > >=` and
 the functions {functions};
-`where(condition, a, b)` chooses. More in [numbers](numbers.md). The first point of a rod is at s = 0; strain twist is taken at the
+`where(condition, a, b)` chooses; more in [numbers](numbers.md).
+
+The first point of a rod is at s = 0; strain twist is taken at the
 middle of each segment. Nothing in a case file can run code.
 
 abs(Omega) times the spacing must be at most 2 (no discrete rod has more strain twist at rest);

@@ -80,7 +80,9 @@ class Fluid(Model):
         Annotated[Positive, Tag("<number>")]
         | Annotated[Spacings, Tag("<mapping>")]
         | Annotated[Radius, Tag("<radius>")],
-        Discriminator(lambda value: "<radius>" if child(value, "radius") else number_tag(value)),
+        Discriminator(
+            lambda value: "<radius>" if child(value, "radius") is not None else number_tag(value)
+        ),
     ] = quantity("length", "width of the blob: a length, {spacings: n}, or {radius: r}")
     density: Positive | None = quantity(
         "density", "only where kinetic energy is wanted", default=None

@@ -29,7 +29,8 @@ def describe_case(case, refuse=False) -> str:
     lines += [*describe_parameters(case), *describe_rods(case, scene)]
     lines.append(
         f"fluid: viscosity {scene.viscosity:.6g} {unit_text(VISCOSITY, unit.names)}"
-        f"{in_water_units(scene.viscosity, unit.names)}, {scene.blob}, epsilon {scene.epsilon:.6g} {unit.length} "
+        f"{in_water_units(scene.viscosity, unit.names)}, {scene.blob}, "
+        f"epsilon {scene.epsilon:.6g} {unit.length} "
         f"= {scene.epsilon / scene.rods.spacing[0]:.4g} spacings"
     )
     if scene.planar:
