@@ -9,14 +9,12 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import (
     AfterValidator,
-    BaseModel,
     Discriminator,
     Field,
     PrivateAttr,
     Tag,
     ValidationInfo,
     field_validator,
-    model_validator,
 )
 
 from rodsim.case.expressions import Expression
@@ -29,40 +27,20 @@ from rodsim.case.fields import (
     NumberOrPair,
     ParameterName,
     Positive,
-    UnitName,
     Vector,
     not_empty,
     number_tag,
     quantity,
 )
 from rodsim.case.materials import WIDTHS, Material, Radius
+from rodsim.case.resolved import resolved
 from rodsim.case.shapes import Shape
 from rodsim.case.source import Source, child
+from rodsim.case.unit_names import Units
 from rodsim.errors import Problem
-from rodsim.units import mass_name
 
 DEFAULT_FRAMES = 100
 FieldName = Literal["position", "director", "velocity", "angular_velocity", "force", "torque"]
-
-
-class Units(Model):
-    """Names of the units; the computation uses the plain numbers. ``force`` may replace mass."""
-
-    length: UnitName = Field("um", description="unit of length")
-    mass: UnitName = Field("g", description="unit of mass")
-    time: UnitName = Field("s", description="unit of time")
-    force: UnitName | None = Field(None, description="unit of force, in place of that of mass")
-
-    @model_validator(mode="after")
-    def _mass_or_force(self):
-        if self.force is not None and "mass" in self.model_fields_set:
-            raise ValueError("give mass or force, not both: each follows from the other")
-        return self
-
-    @property
-    def names(self) -> dict[str, str]:
-        """Names of the units of length, mass and time; of mass it may be that of a product."""
-        return {**self.model_dump(include={"length", "time"}), "mass": mass_name(self.model_dump())}
 
 
 class Spacings(Model):
@@ -270,24 +248,4 @@ class Case(Model):
         ``case_from_mapping`` makes the same case of it again. What another choice makes
         meaningless (the tolerance of euler and rk4) is left out.
         """
-        data = _plain(self)
-        data["output"]["interval"] = self.interval
-        if self.units.force is not None:
-            del data["units"]["mass"]
-        for rod in data["rods"].values():
-            if not rod["parameters"]:  # as in files from before rods had any
-                del rod["parameters"]
-        if self.time.integrator != "rkc":
-            del data["time"]["tolerance"]
-        return data
-
-
-def _plain(value: Any) -> Any:
-    """Return a model as dicts, lists and scalars; what is None is left out."""
-    if isinstance(value, BaseModel):
-        value = {name: getattr(value, name) for name in type(value).model_fields}
-    if isinstance(value, dict):
-        return {name: _plain(item) for name, item in value.items() if item is not None}
-    if isinstance(value, tuple):
-        return [_plain(item) for item in value]
-    return value.text if isinstance(value, Expression) else value
+        return resolved(self)

@@ -36,8 +36,12 @@ def test_force_stands_in_the_place_of_mass(dimension, force, mass):
 def test_thermal_energy():
     """4.114e-21 J at 298 K, in units as people have them."""
     joule = 1.380649e-23 * 298
-    cases = [("nm", "ag", "us", 1e-21 * 1e-18 / 1e-12), ("Å", "Da", "ps", 1.6605e-27 * 1e-20 / 1e-24),
-             ("A", "fg", "ns", 1e-18 * 1e-20 / 1e-18), ("um", "pg", "ms", 1e-15 * 1e-12 / 1e-6)]  # fmt: skip
+    cases = [
+        ("nm", "ag", "us", 1e-21 * 1e-18 / 1e-12),
+        ("Å", "Da", "ps", 1.6605e-27 * 1e-20 / 1e-24),
+        ("A", "fg", "ns", 1e-18 * 1e-20 / 1e-18),
+        ("um", "pg", "ms", 1e-15 * 1e-12 / 1e-6),
+    ]
     for length, mass, time, size in cases:
         units = {"length": length, "mass": mass, "time": time}
         assert thermal_energy(298, units) == pytest.approx(joule / size, rel=1e-4)
