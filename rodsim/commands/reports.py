@@ -3,9 +3,17 @@
 from __future__ import annotations
 
 from rodsim.case.methods import METHODS
+from rodsim.commands.groups import (
+    VISCOSITY,
+    describe_groups,
+    describe_parameters,
+    describe_rods,
+    in_water_units,
+)
 from rodsim.errors import FileError
 from rodsim.run.recorder import frame_times
 from rodsim.scene.build import build_scene
+from rodsim.units import unit_text
 
 
 def describe_case(case, refuse=False) -> str:
@@ -19,21 +27,18 @@ def describe_case(case, refuse=False) -> str:
     scene = build_scene(case)
     unit = case.units
     lines = [case.title] if case.title else []
-    for r, name in enumerate(scene.rods.names):
-        kind = "closed" if scene.rods.closed[r] else "open"
-        lines.append(
-            f"rod {name}: {scene.rods.count[r]} points, {kind}, length "
-            f"{scene.rods.lengths[r]:.6g} {unit.length}, spacing {scene.rods.spacing[r]:.6g}"
-        )
+    lines += [*describe_parameters(case), *describe_rods(case, scene)]
     lines.append(
-        f"fluid: viscosity {scene.viscosity:.6g} {unit.mass} {unit.length}^-1 {unit.time}^-1, "
-        f"{scene.blob}, epsilon {scene.epsilon:.6g} {unit.length} "
+        f"fluid: viscosity {scene.viscosity:.6g} {unit_text(VISCOSITY, unit.names)}"
+        f"{in_water_units(scene.viscosity, unit.names)}, {scene.blob}, "
+        f"epsilon {scene.epsilon:.6g} {unit.length} "
         f"= {scene.epsilon / scene.rods.spacing[0]:.4g} spacings"
     )
     if scene.planar:
         lines.append("planar: only u_y, u_z and w_x are computed")
     for name, count in scene.tracer_groups.items():
         lines.append(f"tracers {name}: {count} markers")
+    lines += describe_groups(case, scene)
     time = case.time
     option = METHODS[time.integrator].option
     how = f"{option} {getattr(time, option):g}"

@@ -5,6 +5,8 @@ import pytest
 import twins
 from scipy.integrate import quad
 
+from rodsim import velocity
+from rodsim.case.materials import WIDTHS
 from rodsim.flows.blobs import (
     BLOBS,
     dipole_scalars,
@@ -121,3 +123,19 @@ def test_identities_of_the_scalars_of_images(blob, r):
     assert slope[6] == pytest.approx(r * e1, rel=1e-9)
     assert slope[7] == pytest.approx(r * e_2, rel=1e-9)
     assert e1 - 2 * p == pytest.approx(d2, rel=1e-14)
+
+
+@pytest.mark.parametrize("blob", WIDTHS)
+def test_a_line_of_blobs_moves_as_a_cylinder_of_its_radius(blob):
+    """Batchelor (1970): 2 ln(2L/a) + 1 across and 4 ln(2L/a) - 2 along, at the middle of 2L."""
+    radius, half, spacing = 0.37, 400.0, 0.1
+    z = np.arange(-half + spacing / 2, half, spacing)
+    sources = np.column_stack([0 * z, 0 * z, z])
+    slender = np.log(2 * half / radius)
+    for axis, expected in ((0, 2 * slender + 1), (2, 4 * slender - 2)):
+        forces = np.zeros_like(sources)
+        forces[:, axis] = spacing
+        moved = velocity(np.zeros((1, 3)), sources, forces, 0 * forces,
+                         epsilon=WIDTHS[blob] * radius, viscosity=0.7, blob=blob)[0]  # fmt: skip
+        # the sum is the integral to rounding at five spacings an epsilon; ends: (a/L)^2
+        assert 8 * np.pi * 0.7 * moved[0, axis] == pytest.approx(expected, rel=1e-5)
