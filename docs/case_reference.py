@@ -33,6 +33,7 @@ SECTIONS = {
     "Fluid": "fluid",
     "Spacings": "fluid.epsilon as a mapping",
     "Rod": "rods.NAME",
+    "Perturb": "rods.NAME.perturb",
     "Moduli": "rods.NAME.moduli",
     "Straight": "rods.NAME.shape, kind: straight",
     "Ring": "rods.NAME.shape, kind: ring",

@@ -19,6 +19,7 @@ from rodsim.case.fields import (
     NumberOrPair,
     ParameterName,
     Positive,
+    Seed,
     UnitName,
     Vector,
     not_empty,
@@ -79,6 +80,14 @@ def _pair(value: float | tuple[float, float]) -> tuple[float, float]:
     return value if isinstance(value, tuple) else (value, value)
 
 
+class Perturb(Model):
+    """A smooth random displacement and twist of a rod's start, the same for the same seed."""
+
+    amplitude: Positive = quantity("length", "root mean square displacement of the centreline")
+    seed: Seed = Field(1, description="another number is another disturbance")
+    modes: Count = Field(8, description="how many waves it is made of; the longest is the rod")
+
+
 class Rod(Model):
     """One elastic rod."""
 
@@ -88,6 +97,9 @@ class Rod(Model):
         "curvature",
         "Omega_1, Omega_2, Omega_3: numbers, or expressions in s, t and the parameters",
         default=(0.0, 0.0, 0.0),
+    )
+    perturb: Perturb | None = Field(
+        None, description="disturbs the start, which symmetry may else keep from what is unstable"
     )
 
     @property

@@ -41,6 +41,7 @@ PER_ROD = {
     "power": (1, 2, -3),
     "length": LENGTH,
 }
+SCENE = {"gap": LENGTH}  # smallest distance of points that are no neighbours, where any are not
 BALANCES = {"net_force": FORCE, "net_torque": ENERGY}  # of all rods together: a vector
 
 # Attributes of /runtime exist from the start, so that setting them never moves anything in the
@@ -101,7 +102,7 @@ class Plan:
     times : (T,) of all frames to come. tracers : their number P. fields : names out of ``FIELDS``;
     position is always stored. units : names of the units of ``length``, ``mass`` and ``time``.
     density : whether kinetic energy is stored. checkpoint : the first state of the run, which all
-    later ones are like: arrays and numbers by name.
+    later ones are like: arrays and numbers by name. gap : whether it is stored.
     """
 
     case: CaseText
@@ -112,6 +113,7 @@ class Plan:
     units: dict[str, str]
     density: bool
     checkpoint: dict
+    gap: bool = False
 
     @property
     def points(self) -> int:
@@ -132,6 +134,8 @@ class Plan:
         for name, dimension in PER_ROD.items():
             if self.density or name != "kinetic_energy":
                 yield Series(name, f"{OBSERVABLES}/{name}", (len(self.rods),), dimension)
+        for name, dimension in SCENE.items() if self.gap else ():
+            yield Series(name, f"{OBSERVABLES}/{name}", (), dimension)
         for name, dimension in BALANCES.items():
             yield Series(name, f"{OBSERVABLES}/{name}", (3,), dimension)
 

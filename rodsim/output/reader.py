@@ -73,11 +73,11 @@ class Trajectory:
         return self._values(f"{TRAJECTORY}/{name}", shape, frames)
 
     def observable(self, name: str, frames=slice(None)) -> np.ndarray:
-        """Return one of ``observables``: (T, R), for net_force and net_torque (T, 3)."""
+        """Return one of ``observables``: (T, R); net_force and net_torque (T, 3); gap (T,)."""
         if name not in self.observables:
             raise FileError(f"{self.path}: has no {name}; it has {', '.join(self.observables)}")
-        columns = 3 if name in layout.BALANCES else len(self.rods)
-        return self._values(f"{OBSERVABLES}/{name}", (columns,), frames)
+        shape = () if name in layout.SCENE else (3 if name in layout.BALANCES else len(self.rods),)
+        return self._values(f"{OBSERVABLES}/{name}", shape, frames)
 
     @property
     def fields(self) -> list[str]:
@@ -90,7 +90,9 @@ class Trajectory:
     def observables(self) -> list[str]:
         """Names of the stored observables."""
         stored = self._file.names(OBSERVABLES)
-        return [name for name in (*layout.PER_ROD, *layout.BALANCES) if name in stored]
+        return [
+            name for name in (*layout.PER_ROD, *layout.SCENE, *layout.BALANCES) if name in stored
+        ]
 
     @property
     def position(self) -> np.ndarray:

@@ -114,7 +114,7 @@ class TrajectoryWriter:
         """Write frame ``index`` and commit it: the next one, or an earlier one again.
 
         fields : structure of arrays, (3, N), director (3, 3, N) as [i, component, point],
-            tracers (3, P). observables : (R,) or (3,) each. What the file does not store is left
+            tracers (3, P). observables : (R,), (3,) or () each. What the file does not store is left
             out.
 
         Raises
@@ -213,7 +213,8 @@ def _row(series, given, point_axis):
     """Return what is stored of one quantity in a frame: points first, as readers want it."""
     if series.name not in given:
         raise ValueError(f"{series.name}: missing in a frame")
-    row = np.moveaxis(np.asarray(given[series.name]), point_axis, 0)
+    row = np.asarray(given[series.name])
+    row = np.moveaxis(row, point_axis, 0) if row.ndim else row
     if row.shape != series.shape:
         raise ValueError(f"{series.name}: {row.shape} in a frame, not {series.shape}")
     if not np.isfinite(row).all():

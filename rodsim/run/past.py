@@ -84,7 +84,9 @@ class Past:
             [*run.overrides, *self.overrides],
         )
         plan = plan_output(self.case, scene, self.snapshot)
-        plan = replace(plan, case=text, times=self._times())
+        plan = replace(
+            plan, case=text, times=self._times(), gap=plan.gap and "gap" in run.observables
+        )
         if plan.rods != run.rods:
             raise FileError(f"{self.path}: damaged: its rods are not those of its case")
         history = self._history()

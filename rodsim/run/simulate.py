@@ -22,6 +22,7 @@ class Summary:
     """How a run ended and what it cost: ``runtime`` is the file's ``/runtime``.
 
     ``compile_seconds`` : what was spent on compiling before the run, counted with the rest of it.
+    ``endings`` : in words, how small the gap got and how fast the rods still moved.
     """
 
     compile_seconds: float = 0.0
@@ -29,6 +30,7 @@ class Summary:
     frames: int = 0
     moved: str | None = None
     runtime: dict = field(default_factory=dict)
+    endings: list[str] = field(default_factory=list)
 
 
 def simulate(
@@ -78,6 +80,7 @@ def simulate(
             notify(str(problem))
         limits = machine.limits  # before the first snapshot: the estimate is part of it
         recorder = Recorder(machine, started, compile_seconds + summary.compile_seconds)
+        recorder.gap.notify = notify
         plan = plan_output(case, scene, capture(machine, recorder, scene.initial))
         with TrajectoryWriter.create(output, plan, overwrite) as recorder.writer:
             inform(limits)
@@ -114,7 +117,9 @@ def resume(
         scene = build_scene(past.case, past.shape)
         machine, compile_seconds = _compile(past.case, scene, bool(past.snapshot["force"]))
         recorder = Recorder(machine, started, compile_seconds + summary.compile_seconds)
+        recorder.gap.notify = notify
         state = restore(machine, recorder, past.snapshot)
+        recorder.follow(past.run)
         with machine.threads(threads), past.writer(machine) as recorder.writer:
             _record(machine, state, recorder, stop, progress or Silent(), summary)
     return summary
@@ -146,6 +151,7 @@ def _record(machine, state, recorder, stop, progress, summary):
         raise
     finally:
         summary.frames, summary.runtime = recorder.frames, recorder.runtime()
+        summary.endings = recorder.endings()
         recorder.writer.finish(summary.status, summary.runtime)
 
 

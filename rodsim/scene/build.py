@@ -7,6 +7,8 @@ import numpy as np
 from rodsim.case import check_strain_twist, spacings_differ
 from rodsim.compiled.constants import HALF_TURN
 from rodsim.errors import CaseError, FileError
+from rodsim.scene.neighbours import coincident
+from rodsim.scene.perturb import perturb
 from rodsim.scene.shapes import FORMULAS, place
 from rodsim.scene.state import Rods, Scene, State, StrainTwist
 from rodsim.scene.stored import read_shape
@@ -36,7 +38,7 @@ def build_scene(case, stored=None) -> Scene:
     if problems:
         raise CaseError(problems)
     tracer, groups = _tracers(case, rods, built)
-    return Scene(
+    scene = Scene(
         rods=rods,
         strain_twist=StrainTwist(rods, [rod.strain_twist for rod in case.rods.values()]),
         epsilon=epsilon,
@@ -47,6 +49,9 @@ def build_scene(case, stored=None) -> Scene:
         tracer_groups=groups,
         initial=State(0.0, position, director, tracer),
     )
+    if stored is None:
+        _refuse_coincident(case, scene)
+    return scene
 
 
 def _folder(case):
@@ -68,7 +73,32 @@ def _build_rod(case, name, rod, stored):
     else:
         position, director = FORMULAS[shape.kind](shape)
         spacing, closed = shape.ds, shape.is_closed
-    return *place(position, director, shape), spacing, closed
+    position, director = place(position, director, shape)
+    if rod.perturb is not None:
+        position, director = _perturbed(case, name, position, director, spacing, closed)
+    return position, director, spacing, closed
+
+
+def _perturbed(case, name, position, director, spacing, closed):
+    how, planar = case.rods[name].perturb, case.plane is not None
+    try:
+        return perturb(position, director, spacing, closed, how, planar)
+    except ValueError as error:
+        problem = case.source.problem(("rods", name, "perturb"), str(error))
+        raise CaseError([problem]) from error
+
+
+def _refuse_coincident(case, scene):
+    """Raise CaseError where rods start through each other or themselves."""
+    pair = coincident(scene)
+    if pair is None:
+        return
+    (name, i), (other, j) = (scene.rods.locate(point) for point in pair)
+    who = f"point {j}" if name == other else f"point {j} of rod '{other}'"
+    reason = (
+        f"point {i} lies on {who}: rods cannot start through each other; give one another origin"
+    )
+    raise CaseError([case.source.problem(("rods", name, "shape"), reason)])
 
 
 def _check_stored(case, name, rod, spacing, segments):

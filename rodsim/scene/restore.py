@@ -6,9 +6,10 @@ import json
 
 import numpy as np
 
-from rodsim.case import case_from_mapping
+from rodsim.case import Case, case_from_mapping
 from rodsim.errors import CaseError, FileError
 from rodsim.scene.build import _epsilon
+from rodsim.scene.neighbours import hydrodynamic_diameter
 from rodsim.scene.state import Rods, Scene, State, StrainTwist
 
 
@@ -20,11 +21,8 @@ def restore_scene(run) -> Scene:
     """
     if run.frames == 0:
         raise FileError(f"{run.path}: has no frames yet ({run.status})")
-    try:
-        case = case_from_mapping(json.loads(run.case_resolved), path=str(run.path))
-        entries = [case.rods[rod.name].strain_twist for rod in run.rods]
-    except (ValueError, KeyError, TypeError, RecursionError, CaseError) as error:
-        raise FileError(f"{run.path}: damaged: the case in it cannot be used: {error}") from error
+    case = restore_case(run)
+    entries = [case.rods[rod.name].strain_twist for rod in run.rods]
     rods = _rods(run.rods)
     return Scene(
         rods=rods,
@@ -37,6 +35,23 @@ def restore_scene(run) -> Scene:
         tracer_groups={},
         initial=stored_state(run, 0),
     )
+
+
+def restore_case(run) -> Case:
+    """Return the case of a stored run, which has all its rods; FileError where it has not."""
+    try:
+        case = case_from_mapping(json.loads(run.case_resolved), path=str(run.path))
+        missing = {rod.name for rod in run.rods} - case.rods.keys()
+        if missing:
+            raise ValueError(f"it has no rod {', '.join(sorted(missing))}")
+    except (ValueError, TypeError, RecursionError, CaseError) as error:
+        raise FileError(f"{run.path}: damaged: the case in it cannot be used: {error}") from error
+    return case
+
+
+def stored_diameter(run, case: Case) -> float:
+    """Return how thick the rods of a stored run are to the fluid."""
+    return hydrodynamic_diameter(case.fluid.blob, _epsilon(case, _rods(run.rods))[0])
 
 
 def stored_state(run, frame: int) -> State:
