@@ -1,8 +1,9 @@
-"""What the last lines of a run say of its motion: how small the gap got, how fast it still moves."""
+"""What the last lines of a run say: how small the gap got, how fast the rods still move."""
 
 from __future__ import annotations
 
 from collections import deque
+from itertools import pairwise
 
 import numpy as np
 
@@ -14,9 +15,10 @@ def gap_sentence(smallest: float, time: float, diameter: float, units: dict) -> 
     """Return how small the gap got, or an empty text where it was never measured."""
     if not np.isfinite(smallest):
         return ""
-    share = f"{smallest / diameter:.3g} of the rods' thickness {diameter:.3g}"
+    length, unit = units["length"], units["time"]
     return (
-        f"smallest gap {smallest:.3g} {units['length']} at t = {time:.4g} {units['time']}, {share}"
+        f"smallest gap {smallest:.3g} {length} at t = {time:.4g} {unit}; "
+        f"the rods are {diameter:.3g} {length} thick"
     )
 
 
@@ -46,12 +48,10 @@ class Motion:
 
     def speeds(self) -> np.ndarray:
         """Return max_k |X_k - X_k before|/(t - t before) between the frames, oldest first."""
-        frames = list(self._frames)
-        pairs = zip(frames[:-1], frames[1:], strict=True)
+        pairs = pairwise(self._frames)
         return np.array(
-            [np.linalg.norm(b - a, axis=0).max() / (end - begin)
-             for (_, begin, a), (_, end, b) in pairs]
-        )  # fmt: skip
+            [np.linalg.norm(b - a, axis=0).max() / (end - t) for (_, t, a), (_, end, b) in pairs]
+        )
 
     def sentence(self, units: dict) -> str:
         """Return how fast the fastest point moves and whether that grows; empty with one frame."""

@@ -154,10 +154,10 @@ def test_earlier_reports_are_renamed(here):
 def test_interrupted_it_keeps_what_it_has(here, monkeypatch):
     plain = Study._outcome
 
-    def interrupted(self, row, repeats):
+    def interrupted(self, row, repeats, **options):
         if row.axis == "epsilon":
             raise KeyboardInterrupt
-        return plain(self, row, repeats)
+        return plain(self, row, repeats, **options)
 
     monkeypatch.setattr(Study, "_outcome", interrupted)
     done = call(*COMMAND, "-o", "report")
