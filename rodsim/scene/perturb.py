@@ -46,6 +46,7 @@ def perturb(position, director, spacing, closed, how, planar):
 def _coefficients(how, closed, planar):
     """Return (cos and sin, x y z and twist, modes), with 1/m^2 in them, of root mean square 1.
 
+    x, y and z have the same share of it, so that no seed disturbs a rod along its axis alone.
     Taken from the bits of the generator: what NumPy makes of them may change, they do not.
     """
     bits = np.random.PCG64(how.seed).random_raw((how.modes, 4, 2)) >> np.uint64(11)
@@ -55,8 +56,8 @@ def _coefficients(how, closed, planar):
     if planar:
         found[:, 0] = 0.0
     square = 0.5 * (found**2).sum(axis=(0, 2))
-    found[:, :3] /= np.sqrt(square[:3].sum())
-    found[:, 3] /= np.sqrt(square[3])
+    found /= np.sqrt(np.where(square > 0.0, square, 1.0))[:, None]
+    found[:, :3] /= np.sqrt(2.0 if planar else 3.0)
     return found
 
 
