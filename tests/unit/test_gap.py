@@ -95,8 +95,15 @@ def test_points_of_two_rods_in_one_place_are_refused(tmp_path, angle):
 
 
 def test_near_is_not_in_one_place(tmp_path):
-    found = scene(tmp_path, b=LINE.replace("}", ", origin: [0, 1.0e-5, 0]}"))
-    assert neighbours.coincident(found) is None
+    across = np.cross(neighbours.DIRECTION, [0.0, 0.0, 1.0])  # the same place in the sorted order
+    for x, y, _ in (1e-5 * across, 0.5 * across):
+        found = scene(tmp_path, b=LINE.replace("}", f", origin: [{x:.17f}, {y:.17f}, 0]}}"))
+        assert neighbours.coincident(found) is None
+
+
+def test_a_rod_that_begins_where_another_ends_is_refused(tmp_path):
+    with pytest.raises(CaseError, match="point 20 lies on point 0 of rod 'b'"):
+        scene(tmp_path, b=LINE.replace("}", ", origin: [0, 0, 8.0]}"))
 
 
 def test_a_rod_through_itself_is_refused(tmp_path):
