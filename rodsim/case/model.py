@@ -19,14 +19,13 @@ from rodsim.case.fields import (
     NumberOrPair,
     ParameterName,
     Positive,
-    Seed,
     UnitName,
     Vector,
     not_empty,
     number_tag,
     quantity,
 )
-from rodsim.case.shapes import Shape
+from rodsim.case.shapes import Perturb, Shape
 from rodsim.case.source import Source
 from rodsim.errors import Problem
 
@@ -78,14 +77,6 @@ class Moduli(Model):
 
 def _pair(value: float | tuple[float, float]) -> tuple[float, float]:
     return value if isinstance(value, tuple) else (value, value)
-
-
-class Perturb(Model):
-    """A smooth random displacement and twist of a rod's start, the same for the same seed."""
-
-    amplitude: Positive = quantity("length", "root mean square displacement of the centreline")
-    seed: Seed = Field(1, description="another number is another disturbance")
-    modes: Count = Field(8, description="how many waves it is made of; the longest is the rod")
 
 
 class Rod(Model):
