@@ -1,4 +1,4 @@
-"""The shapes a rod can start from, and what may disturb them. ``rods/`` turns them into points and triads."""
+"""The shapes a rod can start from, and what may disturb them; ``scene/`` makes points of them."""
 
 from __future__ import annotations
 
