@@ -37,6 +37,7 @@ SECTIONS = {
     "Spacings": "fluid.epsilon with spacings",
     "Radius": "fluid.epsilon with radius",
     "Rod": "rods.NAME",
+    "Perturb": "rods.NAME.perturb",
     "Moduli": "rods.NAME.moduli",
     "Straight": "rods.NAME.shape, kind: straight",
     "Ring": "rods.NAME.shape, kind: ring",

@@ -81,3 +81,19 @@ def rod_loads(X, D, omega, ds, moduli, closed):
         g[k] = F[k] - F[before]
         m[k] = N[k] - N[before] + 0.5 * (np.cross(dX[k], F[k]) + np.cross(dX[before], F[before]))
     return g, m
+
+
+def gap(X, counts, closed, excluded):
+    """Smallest distance of two points of different rods, or more than so many segments apart."""
+    rod = np.repeat(np.arange(len(counts)), counts)
+    number = np.concatenate([np.arange(count) for count in counts])
+    smallest = np.inf
+    for i in range(len(X)):
+        for j in range(i):
+            r, apart = rod[i], number[i] - number[j]
+            if closed[r]:
+                apart = min(apart, counts[r] - apart)
+            if rod[j] != r or apart > excluded[r]:
+                d = X[j] - X[i]
+                smallest = min(smallest, np.sqrt(d[0] ** 2 + d[1] ** 2 + d[2] ** 2))
+    return smallest

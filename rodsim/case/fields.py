@@ -133,6 +133,7 @@ NotZero = Annotated[
 Flag = Annotated[bool, Field(strict=True)]
 Integer = Annotated[int, Field(strict=True)]
 Count = Annotated[int, Field(strict=True, ge=1), AfterValidator(no_larger_than_memory)]
+Seed = Annotated[int, Field(strict=True, ge=0, lt=2**63)]
 OpenPoints = Annotated[int, Field(strict=True, ge=2), AfterValidator(no_larger_than_memory)]
 ClosedPoints = Annotated[int, Field(strict=True, ge=3), AfterValidator(no_larger_than_memory)]
 Vector = tuple[Number, Number, Number]

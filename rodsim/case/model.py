@@ -35,7 +35,7 @@ from rodsim.case.fields import (
 from rodsim.case.materials import WIDTHS, Material, Radius
 from rodsim.case.methods import METHODS, Method
 from rodsim.case.resolved import is_driven, resolved
-from rodsim.case.shapes import Shape
+from rodsim.case.shapes import Perturb, Shape
 from rodsim.case.source import Source, child
 from rodsim.case.unit_names import Units
 from rodsim.errors import Problem
@@ -117,6 +117,9 @@ class Rod(Model):
         "curvature",
         "Omega_1, Omega_2, Omega_3: numbers, or expressions in s, t and the parameters",
         default=(0.0, 0.0, 0.0),
+    )
+    perturb: Perturb | None = Field(
+        None, description="disturbs the start, which symmetry may else keep from what is unstable"
     )
 
     @property

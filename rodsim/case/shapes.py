@@ -1,4 +1,4 @@
-"""The shapes a rod can start from. ``rods/`` turns them into points and triads."""
+"""The shapes a rod can start from, and what may disturb them; ``scene/`` makes points of them."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from rodsim.case.fields import (
     ClosedPoints,
+    Count,
     Direction,
     Flag,
     Integer,
@@ -18,6 +19,7 @@ from rodsim.case.fields import (
     Number,
     OpenPoints,
     Positive,
+    Seed,
     Vector,
     quantity,
 )
@@ -149,6 +151,14 @@ class FileShape(Placed):
     def segments(self) -> None:
         """Not known before the file is read."""
         return None
+
+
+class Perturb(Model):
+    """A smooth random displacement and twist of a rod's start, the same for the same seed."""
+
+    amplitude: Positive = quantity("length", "root mean square displacement of the centreline")
+    seed: Seed = Field(1, description="another number is another disturbance")
+    modes: Count = Field(8, description="how many waves it is made of; the longest is the rod")
 
 
 def _kind_tag(value: Any) -> str | None:

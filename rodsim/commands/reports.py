@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rodsim.case.methods import METHODS
+from rodsim.case.resolved import is_driven
 from rodsim.commands.groups import (
     VISCOSITY,
     describe_groups,
@@ -11,8 +12,10 @@ from rodsim.commands.groups import (
     in_water_units,
 )
 from rodsim.errors import FileError
+from rodsim.run.ending import Motion, gap_sentence
 from rodsim.run.recorder import frame_times
 from rodsim.scene.build import build_scene
+from rodsim.scene.restore import restore_case, stored_diameter
 from rodsim.units import unit_text
 
 
@@ -76,6 +79,7 @@ def run_summary(summary, output) -> str:
     parts = ("compile", "sum", "elasticity", "output")
     split = ", ".join(f"{part} {cost[f'{part}_seconds']:.2f}" for part in parts)
     lines.append(f"{total:.2f} s of wall time: {split} s")
+    lines += summary.endings
     if summary.status == "stopped":
         lines.append(f"go on with: rodsim resume {output}")
     return "\n".join(lines)
@@ -104,6 +108,24 @@ def _fate(run) -> str:
     return run.status + (again if run.status == "stopped" else "")
 
 
+def _endings(run):
+    """Return how small the gap got and how fast the rods still moved, as the run said it."""
+    if not run.frames:
+        return []
+    try:
+        case = restore_case(run)
+    except FileError:  # its frames can still be looked at
+        return []
+    motion = Motion(is_driven(case))
+    motion.read(run, run.frames)
+    sentences = [motion.sentence(run.units)]
+    if "gap" in run.observables:
+        gaps = run.observable("gap")
+        k, diameter = int(gaps.argmin()), stored_diameter(run, case)
+        sentences.insert(0, gap_sentence(gaps[k], run.time[k], diameter, run.units))
+    return [text for text in sentences if text]
+
+
 def describe_output(path) -> str:
     """Return what an output file holds and how its run ended."""
     from rodsim.output import open_trajectory
@@ -119,6 +141,7 @@ def describe_output(path) -> str:
         for rod in run.rods:
             kind = "closed" if rod.closed else "open"
             lines.append(f"rod {rod.name}: {rod.count} points, {kind}, spacing {rod.spacing:g}")
+        lines += _endings(run)
         lines.append(f"fields: {', '.join(run.fields)}")
         lines.append(f"observables: {', '.join(run.observables)}")
         lines += [

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
@@ -57,12 +57,17 @@ class Errors:
     speed: float | None
 
 
-def solve(case, threads=None, repeats=1, enough=2.0, progress=lambda fraction: None) -> Outcome:
+def solve(
+    case, threads=None, repeats=1, enough=2.0, progress=lambda fraction: None, nudged=False
+) -> Outcome:
     """Run a case to its end without an output; again until ``repeats`` or ``enough`` seconds.
 
-    Raises DivergedError as ``simulate`` does.
+    ``nudged``: from a start that differs in the last bit. Raises DivergedError as ``simulate``
+    does.
     """
     scene, seconds = build_scene(case), []
+    if nudged:
+        scene = replace(scene, initial=_nudged(scene))
     while len(seconds) < repeats and (not seconds or sum(seconds) < enough):
         machine = Machine(case, scene, force=False)
         with machine.threads(threads):
@@ -82,6 +87,19 @@ def solve(case, threads=None, repeats=1, enough=2.0, progress=lambda fraction: N
         steps=integrator.accepted,
         rejected=integrator.rejected,
     )
+
+
+def _nudged(scene):
+    """Return the initial state, every coordinate changed by what rounding leaves uncertain in it.
+
+    That is the last bit of a number as large as the longest rod: of a coordinate that is 0 by
+    symmetry, rounding leaves as much.
+    """
+    initial = scene.initial
+    signs = np.random.default_rng(2013).choice([-1.0, 1.0], initial.position.shape)
+    if scene.planar:
+        signs[0] = 0.0
+    return replace(initial, position=initial.position + signs * np.spacing(scene.length_scale))
 
 
 def _march(machine, end, progress):

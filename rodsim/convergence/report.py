@@ -10,7 +10,7 @@ from rodsim.case.methods import ADAPTIVE, FIXED_STEP
 from rodsim.convergence.study import Result, Section, Study
 from rodsim.errors import FileError
 
-NEAR = 2.0  # times the reference's own error: below this a row's error is not its own
+NEAR = 2.0  # times the reference's own error, or rounding's: below it an error is not a row's own
 METHODS = (*ADAPTIVE, *sorted(FIXED_STEP))  # in the order of the table
 HEADS = {
     "time": "error against run time: tolerance of rkc, step of euler and rk4",
@@ -25,7 +25,7 @@ def fitted_order(section: Section, method: str) -> float | None:
     Least squares on logarithms over the rows well above the reference's own error; for rkc in
     time against the mean accepted step. None with fewer than two such rows.
     """
-    floor = NEAR * section.own.position if section.own else 0.0
+    floor = NEAR * section.floor
     pairs = [
         (_size(section, result), result.errors.position)
         for result in section.results
@@ -56,6 +56,9 @@ def _section(study, section):
     yield HEADS[section.axis]
     own = "" if section.own is None else f": good to {section.own.position:.1e} {unit}"
     yield f"reference: {section.reference}{own}"
+    if section.amplified:
+        apart = f"{section.rounding.position:.1e} {unit}"
+        yield f"no bound: rounding is amplified, starts a last bit apart end {apart} apart"
     yield f"largest and rms distance in {unit}, wall time in seconds; energy over the larger of its"
     yield "first and last value, speed over itself; ~: no larger than what the reference may err"
     names = ["method", "value", "largest", "of length", "rms", "angle/deg", "energy"]
@@ -83,7 +86,7 @@ def _cells(section, result, swims):
             f"{run.evaluations * run.pairs:.3g}"]  # fmt: skip
     if e is None:
         return [*head, "reference", *[""] * (4 + swims), *cost]
-    near = section.own is not None and e.position < NEAR * section.own.position
+    near = section.own is not None and e.position < NEAR * section.floor
     largest = ("~" if near else "") + f"{e.position:.2e}"
     speed = [f"{e.speed:.2e}"] if swims else []
     sizes = [f"{x:.2e}" for x in (e.relative, e.rms, e.angle, e.energy)]
@@ -125,7 +128,8 @@ class CsvRows:
     COLUMNS = ("section", "method", "value", "status",
                "position_error", "relative_error", "rms_error", "triad_angle_degrees",
                "energy_error", "speed_error", "seconds", "seconds_low", "seconds_high", "repeats",
-               "steps", "rejected", "evaluations", "pairs", "reference_error")  # fmt: skip
+               "steps", "rejected", "evaluations", "pairs",
+               "reference_error", "rounding_error")  # fmt: skip
 
     def __init__(self, path):
         self.path = path
@@ -134,14 +138,14 @@ class CsvRows:
     def add(self, section: Section, result: Result) -> None:
         """Write one row."""
         e, run = result.errors, result.outcome
-        own = section.own.position if section.own else ""
+        known = ["" if e is None else e.position for e in (section.own, section.rounding)]
         errors = [""] * 6 if e is None else ["" if x is None else x for x in vars(e).values()]
         cost = [""] * 8
         if run is not None:
             spread = np.median(run.seconds), min(run.seconds), max(run.seconds)
             cost = [*spread, len(run.seconds), run.steps, run.rejected, run.evaluations, run.pairs]
         row = result.row
-        self._write([row.axis, row.method, row.value, result.status, *errors, *cost, own], "a")
+        self._write([row.axis, row.method, row.value, result.status, *errors, *cost, *known], "a")
 
     def _write(self, cells, mode):
         try:

@@ -16,6 +16,8 @@ from rodsim.scene.system import RodSystem
 
 REPEATS = 3
 BESIDE = 20_000  # pairs that all but the sums takes as long as, in an evaluation
+ROUNDING = 1e-12  # of the longest rod: what a last bit is after a stable run
+AMPLIFIED = 0.1  # of the reference's own error: rounding is then part of it
 DONE, REFUSED, DIVERGED, LEFT_OUT = "", "refused", "diverged", "left out"
 
 
@@ -31,12 +33,28 @@ class Result:
 
 @dataclass
 class Section:
-    """One axis: its reference, in words and with its own error, and the rows so far."""
+    """One axis: its reference, in words and with its own error, and the rows so far.
+
+    ``rounding``: how far two runs end from each other that differ in the last bit of their start.
+    """
 
     axis: str
     reference: str
     own: Errors | None = None
+    rounding: Errors | None = None
     results: list[Result] = field(default_factory=list)
+
+    @property
+    def floor(self) -> float:
+        """Position error below which nothing can be told: the reference's own, or rounding's."""
+        return max((e.position for e in (self.own, self.rounding) if e), default=0.0)
+
+    @property
+    def amplified(self) -> bool:
+        """Whether rounding alone moves the end so far that ``own`` is no bound."""
+        if not (self.own and self.rounding) or self.rounding.relative < ROUNDING:
+            return False
+        return self.rounding.position > AMPLIFIED * self.own.position
 
 
 class OutOfTime(Exception):
@@ -68,7 +86,9 @@ class Study:
         scene does not have.
         """
         plan = self._plan()
-        self._weights = sum(self._weight(row) for _, part in plan for row in part)
+        parts = [row for _, part in plan for row in part]
+        twice = [row for _, part in plan for row in part[1:] if self._is_twin(row)]
+        self._weights = sum(map(self._weight, [*parts, *twice]))
         for section, part in plan:
             yield from self._section(section, part)
 
@@ -131,10 +151,28 @@ class Study:
             result = self._result(row, first, reference)
             if section.own is None and section.axis != "epsilon" and result.errors:
                 section.own = _own(section, result.errors)
+            if result.outcome and row is not first and self._is_twin(row):
+                section.rounding = self._rounding(row, result.outcome)
             if row.axis == "time":
                 continue
             section.results.append(result)
             yield section, result
+
+    def _is_twin(self, row):
+        """Tell the runs that are made again from a start that differs in the last bit.
+
+        They are the check of the reference in time, and the case's own number of points.
+        """
+        if row.axis == "points":
+            return row.value == self.scene.rods.points
+        return row.axis == "time"
+
+    def _rounding(self, row, outcome):
+        if self._predicted(row) > self._end - monotonic():
+            self._done += self._weight(row)
+            return None
+        twin = self._outcome(row, repeats=1, nudged=True)
+        return compare(twin, outcome) if isinstance(twin, Outcome) else None
 
     def _result(self, row, first, reference):
         if row is first:
@@ -148,7 +186,7 @@ class Study:
             return Result(row, status=outcome)
         return Result(row, outcome, compare(outcome, reference))
 
-    def _outcome(self, row, repeats):
+    def _outcome(self, row, repeats, nudged=False):
         """Return the outcome of a row, or in words why there is none."""
         weight = self._weight(row)
         try:
@@ -158,6 +196,7 @@ class Study:
                 self.threads,
                 repeats,
                 progress=lambda fraction: self._tick(row, fraction * weight),
+                nudged=nudged,
             )
         except CaseError as error:
             found = f"{REFUSED}: {error.problems[0].reason}"

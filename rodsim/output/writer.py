@@ -114,8 +114,8 @@ class TrajectoryWriter:
         """Write frame ``index`` and commit it: the next one, or an earlier one again.
 
         fields : structure of arrays, (3, N), director (3, 3, N) as [i, component, point],
-            tracers (3, P). observables : (R,) or (3,) each. What the file does not store is left
-            out.
+            tracers (3, P). observables : (R,), (3,) or () each. What the file does not store is
+            left out.
 
         Raises
         ------

@@ -11,12 +11,14 @@ class Summary:
     """How a run ended and what it cost.
 
     moved : where the output that had its name has gone, or None. runtime : the file's ``/runtime``.
+    endings : in words, how small the gap got and how fast the rods still moved.
     """
 
     status: str = "running"
     frames: int = 0
     moved: str | None = None
     runtime: dict = field(default_factory=dict)
+    endings: list[str] = field(default_factory=list)
 
 
 class Listener:

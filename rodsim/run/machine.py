@@ -6,12 +6,13 @@ from rodsim.compiled.threads import threads_for
 from rodsim.integrators.limits import Limits, check_step, stability
 from rodsim.integrators.make import make_integrator
 from rodsim.integrators.spectral import SpectralRadius
+from rodsim.run.gap import Gap
 from rodsim.run.watch import Watch
 from rodsim.scene.system import RodSystem
 
 
 class Machine:
-    """System, integrator and watch of a case."""
+    """System, integrator, gap and watch of a case."""
 
     def __init__(self, case, scene, force: bool):
         """``force``: let a fixed step be above its limit of stability."""
@@ -20,6 +21,7 @@ class Machine:
         radius = SpectralRadius(self.system)  # one estimate serves all who need the fastest rate
         self._radius = radius
         self.integrator = make_integrator(case.time, self.system, radius, case.longest_step)
+        self.gap = Gap(scene, case.units.model_dump())
         self.watch = Watch(case, self.system, self.integrator, None if force else radius)
 
     @cached_property

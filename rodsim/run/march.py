@@ -18,6 +18,7 @@ def record(machine, state, recorder, listener: Listener) -> Summary:
         raise
     finally:
         summary.frames, summary.runtime = recorder.frames, recorder.runtime()
+        summary.endings = recorder.endings()
         try:
             recorder.writer.finish(summary.status, summary.runtime)
         finally:

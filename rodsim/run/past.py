@@ -85,7 +85,8 @@ class Past:
             [*run.overrides, *self.overrides],
         )
         plan = plan_output(self.case, scene, self.snapshot)
-        plan = replace(plan, case=text, times=self._times())
+        stored = tuple(series for series in plan.extra if series[0] in run.observables)
+        plan = replace(plan, case=text, times=self._times(), extra=stored)
         if plan.rods != run.rods:
             raise FileError(f"{self.path}: damaged: its rods are not those of its case")
         history = self._history()

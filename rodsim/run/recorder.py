@@ -8,6 +8,7 @@ import numpy as np
 from rodsim.errors import StepFailure
 from rodsim.output import CaseText, Plan
 from rodsim.output.writer import NotFinite
+from rodsim.run.ending import Motion
 from rodsim.scene.series import extra_series
 
 SECONDS_BETWEEN_CHECKPOINTS = 60.0  # at most, if no frame comes
@@ -49,6 +50,7 @@ class Recorder:
 
     def __init__(self, machine, started, compile_seconds):
         self.system, self.integrator = machine.system, machine.integrator
+        self.gap, self.motion = machine.gap, Motion(machine.system.scene.parts.driven)
         self.started, self.compile_seconds = started, compile_seconds
         self.writer, self.next_frame, self.output_seconds = None, 0, 0.0
         self.marched = self._checkpointed = self._synced = perf_counter()
@@ -75,10 +77,13 @@ class Recorder:
     def _write(self, number, state, rates=None):
         begin = perf_counter()
         try:
-            self.writer.write_frame(self.next_frame, number, *self.system.observe(state, rates))
+            fields, observables = self.system.observe(state, rates)
+            observables |= self.gap.measure(state)
+            self.writer.write_frame(self.next_frame, number, fields, observables)
         except NotFinite as error:
             what = self.system.scene.parts.not_finite(state.time) or error.name
             raise StepFailure(f"{what} is not finite at t = {state.time:.6g}", state) from None
+        self.motion.add(number, state.time, state.position)
         self.next_frame += 1
         self.output_seconds += perf_counter() - begin
 
@@ -110,6 +115,16 @@ class Recorder:
         self.started -= wall
         self.marched -= solving + output
         self.compile_seconds += compiling
+
+    def follow(self, run) -> None:
+        """Go on after the frames of a stored run: what they say of gap and motion is known."""
+        self.gap.resume(run, self.next_frame)
+        self.motion.read(run, self.next_frame)
+
+    def endings(self) -> list[str]:
+        """Return what is to be said of the motion when the run ends."""
+        sentences = self.gap.sentence(), self.motion.sentence(self.gap.units)
+        return [text for text in sentences if text]
 
     def runtime(self) -> dict:
         """Return what the run has cost so far, as stored in ``/runtime``."""

@@ -97,6 +97,7 @@ def resume(
         from rodsim.run.snapshot import restore
 
         state = restore(machine, recorder, past.snapshot)
+        recorder.follow(past.run)
         with machine.threads(threads), past.writer(machine) as recorder.writer:
             return record(machine, state, recorder, listener)
 
@@ -116,4 +117,5 @@ def _prepare(case, scene, force, started, listener):
     from rodsim.run.recorder import Recorder
 
     machine = Machine(case, scene, force)
+    machine.gap.notify = listener.warn
     return machine, Recorder(machine, started, seconds + perf_counter() - begin)

@@ -12,6 +12,8 @@ from rodsim.errors import CaseError, FileError
 from rodsim.nodes import lay_out
 from rodsim.registry import kinds
 from rodsim.scene.at_wall import below_wall
+from rodsim.scene.neighbours import coincident
+from rodsim.scene.perturb import perturb
 from rodsim.scene.shapes import FORMULAS, place
 from rodsim.scene.state import Scene, State
 from rodsim.scene.stored import read_shape
@@ -38,7 +40,7 @@ def build_scene(case, stored=None) -> Scene:
     )
     position = np.ascontiguousarray(np.concatenate([rod[0] for rod in built], axis=1))
     director = np.ascontiguousarray(np.concatenate([rod[1] for rod in built], axis=2))
-    epsilon, problems = _epsilon(case, rods)
+    epsilon, problems = epsilon_of(case, rods)
     if case.plane is not None:
         problems += _plane_problems(case, rods, position, director)
         position[0], director = position[0, 0], _flattened(director)
@@ -59,6 +61,8 @@ def build_scene(case, stored=None) -> Scene:
     )
     if problems := list(below_wall(case, scene)):
         raise CaseError(problems)
+    if stored is None:
+        _refuse_coincident(case, scene)
     return with_parts(scene, [part for kind in kinds() for part in kind.build(case, scene)])
 
 
@@ -87,7 +91,32 @@ def _build_rod(case, name, rod, stored):
     else:
         position, director = FORMULAS[shape.kind](shape)
         spacing, closed = shape.ds, shape.is_closed
-    return *place(position, director, shape), spacing, closed
+    position, director = place(position, director, shape)
+    if rod.perturb is not None:
+        position, director = _perturbed(case, name, position, director, spacing, closed)
+    return position, director, spacing, closed
+
+
+def _perturbed(case, name, position, director, spacing, closed):
+    how, planar = case.rods[name].perturb, case.plane is not None
+    try:
+        return perturb(position, director, spacing, closed, how, planar)
+    except ValueError as error:
+        problem = case.source.problem(("rods", name, "perturb"), str(error))
+        raise CaseError([problem]) from error
+
+
+def _refuse_coincident(case, scene):
+    """Raise CaseError where rods start through each other or themselves."""
+    pair = coincident(scene)
+    if pair is None:
+        return
+    (name, i), (other, j) = (scene.rods.locate(point) for point in pair)
+    who = f"point {j}" if name == other else f"point {j} of rod '{other}'"
+    reason = (
+        f"point {i} lies on {who}: rods cannot start through each other; give one another origin"
+    )
+    raise CaseError([case.source.problem(("rods", name, "shape"), reason)])
 
 
 def _check_stored(case, name, rod, spacing, segments):
@@ -101,7 +130,7 @@ def _check_stored(case, name, rod, spacing, segments):
         raise CaseError([case.source.problem((*where, *path), reason) for path, reason in errors])
 
 
-def _epsilon(case, rods):
+def epsilon_of(case, rods):
     """Return epsilon as a length, and the problem of spacings that differ, if they do."""
     epsilon = case.fluid.epsilon
     if isinstance(epsilon, float):

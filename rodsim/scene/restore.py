@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from rodsim.case import case_from_mapping
+from rodsim.case import Case, case_from_mapping
 from rodsim.errors import CaseError, FileError
-from rodsim.scene.build import build_scene
+from rodsim.scene.build import build_scene, epsilon_of
+from rodsim.scene.neighbours import hydrodynamic_diameter
 from rodsim.scene.state import Scene, State
 
 
@@ -21,7 +22,8 @@ def restore_scene(run) -> Scene:
     """
     if run.frames == 0:
         raise FileError(f"{run.path}: has no frames yet ({run.status})")
-    first = stored_state(run, 0)
+    case, first = restore_case(run), stored_state(run, 0)
+    case = case.model_copy(update={"tracers": {}})
 
     def stored(name, shape):
         rod = next(rod for rod in run.rods if rod.name == name)
@@ -33,14 +35,29 @@ def restore_scene(run) -> Scene:
         )
 
     try:
-        resolved = json.loads(run.case_resolved)
-        resolved.pop("tracers", None)
-        scene = build_scene(case_from_mapping(resolved, path=str(run.path)), stored)
-    except (ValueError, KeyError, TypeError, RecursionError, StopIteration, CaseError) as error:
+        scene = build_scene(case, stored)
+    except (ValueError, StopIteration, CaseError) as error:
         raise FileError(f"{run.path}: damaged: the case in it cannot be used: {error}") from error
     if scene.rods != run.rods:
         raise FileError(f"{run.path}: damaged: its rods are not those of its case")
     return replace(scene, initial=replace(first, work=scene.initial.work))
+
+
+def restore_case(run) -> Case:
+    """Return the case of a stored run, which has all its rods; FileError where it has not."""
+    try:
+        case = case_from_mapping(json.loads(run.case_resolved), path=str(run.path))
+        missing = {rod.name for rod in run.rods} - case.rods.keys()
+        if missing:
+            raise ValueError(f"it has no rod {', '.join(sorted(missing))}")
+    except (ValueError, TypeError, RecursionError, CaseError) as error:
+        raise FileError(f"{run.path}: damaged: the case in it cannot be used: {error}") from error
+    return case
+
+
+def stored_diameter(run, case: Case) -> float:
+    """Return how thick the rods of a stored run are to the fluid."""
+    return hydrodynamic_diameter(case.fluid.blob, epsilon_of(case, run.rods)[0])
 
 
 def stored_state(run, frame: int) -> State:

@@ -2,12 +2,15 @@
 
 from rodsim.compiled.parts import FORCE
 from rodsim.output import layout
+from rodsim.scene.neighbours import any_pair_counts
 from rodsim.scene.state import Scene
 
 
 def extra_series(scene: Scene) -> tuple:
     """Return the observables that not every scene has: (name, shape, dimension) of each."""
     series = [entry for part in scene.parts for entry in part.series]
+    if any_pair_counts(scene):
+        series.append(("gap", (), layout.LENGTH))
     if any(part.external for part in scene.parts.of(FORCE)):
         series += [("external_force", (3,), layout.FORCE), ("external_torque", (3,), layout.ENERGY)]
     if scene.parts.external:

@@ -10,7 +10,7 @@ from scenes import CONFIGS, final_state, load
 from rodsim.analysis.difference import position_errors, triad_angle
 from rodsim.cli import main
 from rodsim.convergence import rows
-from rodsim.convergence.report import fitted_order
+from rodsim.convergence.report import fitted_order, text
 from rodsim.convergence.study import Study
 from rodsim.errors import UsageError
 
@@ -154,10 +154,10 @@ def test_earlier_reports_are_renamed(here):
 def test_interrupted_it_keeps_what_it_has(here, monkeypatch):
     plain = Study._outcome
 
-    def interrupted(self, row, repeats):
+    def interrupted(self, row, repeats, **options):
         if row.axis == "epsilon":
             raise KeyboardInterrupt
-        return plain(self, row, repeats)
+        return plain(self, row, repeats, **options)
 
     monkeypatch.setattr(Study, "_outcome", interrupted)
     done = call(*COMMAND, "-o", "report")
@@ -171,3 +171,25 @@ def test_unknown_axis_is_refused(here):
     done = call("converge", CONFIGS / "open_rod.yaml", "--in", "step,mesh")
     assert done.exit_code == 2
     assert "'mesh' is none of tolerance, step, points, epsilon" in done.stderr
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(("end", "amplified"), [(0.02, False), (0.75, True)])
+def test_where_rounding_decides_the_end_no_bound_is_claimed(end, amplified):
+    """A ring beyond Michell's twist, started without any disturbance: rounding grows e^(57 t)."""
+    ring = ("rods.ring.shape={kind: ring, radius: 2.5, points: 40}", f"time.end={end}",
+            "rods.ring.strain_twist=[0, 0, 1.0]", "time.tolerance=1e-3",
+            "rods.ring.moduli.shear=0.08", "rods.ring.moduli.stretch=0.08")  # fmt: skip
+    made, _ = study("tolerance", config="closed_ring", overrides=ring)
+    section = made.sections[0]
+    assert section.amplified == amplified
+    assert ("no bound: rounding is amplified" in text(made)) == amplified
+    assert section.floor == max(section.own.position, section.rounding.position)
+    assert (section.rounding.position > 1e-11) == amplified
+
+
+@pytest.mark.compiled
+def test_the_twin_in_space_has_the_points_of_the_case(in_space):
+    section = in_space[0].sections[0]
+    assert 0.0 < section.rounding.position < 1e-9
+    assert not section.amplified

@@ -1,0 +1,83 @@
+"""What the last lines of a run say: how small the gap got, how fast the rods still move."""
+
+from __future__ import annotations
+
+from collections import deque
+from itertools import pairwise
+
+import numpy as np
+
+KEPT = 6  # frames
+GROWTH, JUMP = 3.0, 20.0  # over several steps, in one
+
+
+def gap_sentence(smallest: float, time: float, diameter: float, units: dict) -> str:
+    """Return how small the gap got, or an empty text where it was never measured."""
+    if not np.isfinite(smallest):
+        return ""
+    length, unit = units["length"], units["time"]
+    return (
+        f"smallest gap {smallest:.3g} {length} at t = {time:.4g} {unit}; "
+        f"the rods are {diameter:.3g} {length} thick"
+    )
+
+
+class Motion:
+    """How far points moved between the last steps of a run, seen at frames.
+
+    Of the frames in one step only the last counts: the interpolant between is smooth to the
+    tolerance, but its slope holds what the stiff modes make of it, and hides any slow growth.
+    """
+
+    def __init__(self, driven: bool):
+        """``driven``: whether it is kept in motion from outside, so that growth says nothing."""
+        self.driven, self._frames = driven, deque(maxlen=KEPT)
+
+    def add(self, step: int, time: float, position: np.ndarray) -> None:
+        """Take in the next frame: the number of its step, its time, positions (3, N)."""
+        if self._frames and self._frames[-1][0] == step:
+            self._frames.pop()
+        self._frames.append((step, float(time), position.copy()))
+
+    def read(self, run, frames: int) -> None:
+        """Take in the last of the first ``frames`` frames of a stored run."""
+        steps = run.steps[:frames]
+        ends = np.append(np.flatnonzero(np.diff(steps)), frames - 1) if frames else ()
+        for frame in ends[-KEPT:]:
+            self.add(int(steps[frame]), run.time[frame], run.read("position", frame).T)
+
+    def speeds(self) -> np.ndarray:
+        """Return max_k |X_k - X_k before|/(t - t before) between the frames, oldest first."""
+        pairs = pairwise(self._frames)
+        return np.array(
+            [np.linalg.norm(b - a, axis=0).max() / (end - t) for (_, t, a), (_, end, b) in pairs]
+        )
+
+    def sentence(self, units: dict) -> str:
+        """Return how fast the fastest point moves and whether that grows; empty with one frame."""
+        speeds = self.speeds()
+        if not speeds.size:
+            return ""
+        what = "fastest point" if self.driven else "still moving: fastest point"
+        span = self._frames[-1][1] - self._frames[-2][1]
+        unit = f"{units['length']}/{units['time']}"
+        text = f"{what} {speeds[-1]:.2g} {unit} over the last {span:.2g} {units['time']}"
+        return text if self.driven else text + _trend(speeds)
+
+
+def _trend(speeds):
+    """Return whether speeds grow or fall, with where they come from; empty where neither shows.
+
+    What is left of the steps' errors goes up and down by a few times from one to the next.
+    """
+    rises = _run_of(np.diff(speeds) > 0.0)
+    growth = speeds[-1] / max(speeds[-1 - rises], np.finfo(float).tiny)
+    if growth >= JUMP or (rises > 1 and growth >= GROWTH):
+        return f", growing from {speeds[-1 - rises]:.2g}"
+    falls = _run_of(np.diff(speeds) < 0.0)
+    return f", slowing down from {speeds[-1 - falls]:.2g}" if falls > 1 else ""
+
+
+def _run_of(flags):
+    """Return how many of the last flags are set, without a break."""
+    return int(np.argmin([*flags[::-1], False]))

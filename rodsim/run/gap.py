@@ -1,0 +1,65 @@
+"""How close the rods of a run come to each other and to themselves: measured at frames, said once.
+
+Nothing but the fluid keeps rods apart. In the model they never cross, but below their thickness it
+says nothing true of rods that touch, and errors of time and space can carry them through.
+"""
+
+import math
+import sys
+import warnings
+
+from rodsim.run.ending import gap_sentence
+from rodsim.scene.gap import closest_pair
+from rodsim.scene.neighbours import any_pair_counts, excluded, hydrodynamic_diameter
+
+
+class Gap:
+    """Measures the gap of a scene, keeps the smallest, warns the first time it is too small.
+
+    ``notify`` is called with the text of that warning.
+    """
+
+    def __init__(self, scene, units: dict):
+        self.scene, self.units, self.notify = scene, units, warnings.warn
+        self.diameter = hydrodynamic_diameter(scene.blob, scene.epsilon)
+        self.smallest, self.time = math.inf, math.nan
+        rods = scene.rods
+        self._rods = rods.first, rods.count, rods.closed, excluded(scene)
+        self._any = any_pair_counts(scene)
+
+    def measure(self, state) -> dict:
+        """Return the observable ``gap`` of a frame, length; nothing where no two points count."""
+        if not self._any:
+            return {}
+        distance, first, second = closest_pair(state.position, *self._rods)
+        distance = min(distance, sys.float_info.max)  # of rods so far apart that squares overflow
+        if distance < self.diameter <= self.smallest:
+            self.notify(self._warning(distance, first, second, state.time))
+        if distance < self.smallest:
+            self.smallest, self.time = distance, state.time
+        return {"gap": distance}
+
+    def resume(self, run, frames: int) -> None:
+        """Go on after the first frames of a stored run: what was said is not said again."""
+        gaps = run.observable("gap", slice(0, frames)) if "gap" in run.observables else ()
+        if len(gaps):
+            frame = int(gaps.argmin())
+            self.smallest, self.time = float(gaps[frame]), float(run.time[frame])
+
+    def sentence(self) -> str:
+        """Return how small it got, or an empty text."""
+        return gap_sentence(self.smallest, self.time, self.diameter, self.units)
+
+    def _warning(self, distance, first, second, time):
+        (rod, i), (other, j) = (self.scene.rods.locate(point) for point in (first, second))
+        who = (
+            f"rod '{rod}' comes closer to itself than it is thick: its points {i} and {j}"
+            if rod == other
+            else f"rods '{rod}' and '{other}' come closer than they are thick: points {i} and {j}"
+        )
+        length, unit = self.units["length"], self.units["time"]
+        return (
+            f"{who} are {distance:.3g} {length} apart at t = {time:.6g} {unit}; to the fluid a rod "
+            f"is {self.diameter:.3g} {length} thick. Nothing but the fluid keeps rods apart, and "
+            "below that the model does not hold for rods that touch (docs/method.md)"
+        )
