@@ -6,6 +6,7 @@ from pathlib import Path
 
 from rodsim.errors import FileError
 
+DEFAULT_OUTPUT = "out.h5"
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 

@@ -16,6 +16,7 @@ from functools import reduce
 
 import numpy as np
 
+from rodsim.case.functions import FUNCTIONS, NAMES, OF_MANY, library_hint, wrong_count
 from rodsim.case.words import clipped, did_you_mean, one_of
 
 LONGEST = 1000  # characters
@@ -35,12 +36,7 @@ _OPERATORS = {
     ast.Gt: np.greater,
     ast.GtE: np.greater_equal,
 }
-_ONE_ARGUMENT = {
-    name: getattr(np, name) for name in ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "abs")
-}
-_MANY_ARGUMENTS = {"min": np.minimum, "max": np.maximum}
-FUNCTIONS = (*_ONE_ARGUMENT, *_MANY_ARGUMENTS, "where")
-RESERVED = ("s", "t", "pi", *FUNCTIONS)
+RESERVED = ("s", "t", "pi", *NAMES)
 
 _REFUSED = {
     ast.Attribute: "attribute access (a dot after a name) is not allowed",
@@ -48,7 +44,7 @@ _REFUSED = {
     ast.BoolOp: "'and' and 'or' are not allowed: nest where(condition, a, b)",
     ast.Not: "'not' is not allowed: turn the comparison round",
     ast.Lambda: "lambda is not allowed",
-    ast.Tuple: "a comma is only allowed between the arguments of a function",
+    ast.Tuple: "a comma is only allowed between the arguments of a function; decimals have a point",
     ast.FloorDiv: "// is not allowed",
 }
 _ODD_CHARACTER = re.compile(r"[^A-Za-z0-9_.+\-*/%()<>, ]")
@@ -153,10 +149,6 @@ def _compared(comparison: Callable) -> Callable:
     return lambda a, b: np.where(comparison(a, b), 1.0, 0.0)
 
 
-def _chosen(condition, if_true, if_false):
-    return np.where(condition != 0.0, if_true, if_false)
-
-
 class _Builder:
     """Turns a syntax tree into nodes, refusing all that is not on the whitelist."""
 
@@ -182,6 +174,8 @@ class _Builder:
             return self._comparison(tree, depth)
         if kind is ast.Call:
             return self._call(tree, depth)
+        if kind is ast.Attribute:
+            _refuse_library(tree)
         raise ExpressionError(_REFUSED.get(kind, f"{kind.__name__} is not allowed"))
 
     def _number(self, value: object) -> Node:
@@ -200,7 +194,7 @@ class _Builder:
             return np.float64(np.pi)
         if name in self.parameters:
             return np.float64(self.parameters[name])
-        if name in FUNCTIONS:
+        if name in NAMES:
             raise ExpressionError(f"'{name}' is a function: write {name}(...)")
         hint = did_you_mean(name, (*RESERVED, *self.parameters))
         known = f": it can use {one_of(['s', 't', 'pi', *self.parameters])}"
@@ -224,26 +218,27 @@ class _Builder:
         return reduce(lambda a, b: _apply(np.multiply, a, b), parts)
 
     def _call(self, tree: ast.Call, depth: int) -> Node:
+        if isinstance(tree.func, ast.Attribute):
+            _refuse_library(tree.func)
         if not isinstance(tree.func, ast.Name):
             raise ExpressionError("a name must stand before '(': did you leave out a '*'?")
         name = tree.func.id
-        if name not in FUNCTIONS:
-            hint = did_you_mean(name, FUNCTIONS) or f": the functions are {', '.join(FUNCTIONS)}"
+        if name not in NAMES:
+            hint = did_you_mean(name, NAMES) or f": the functions are {', '.join(NAMES)}"
             raise ExpressionError(f"unknown function '{clipped(name)}'{hint}")
         if tree.keywords or any(isinstance(argument, ast.Starred) for argument in tree.args):
             raise ExpressionError(f"{name} takes plain arguments only")
-        _check_count(name, len(tree.args))
+        if reason := wrong_count(name, len(tree.args)):
+            raise ExpressionError(reason)
         arguments = [self.build(argument, depth + 1) for argument in tree.args]
-        if name == "where":
-            return _apply(_chosen, *arguments)
-        if name in _ONE_ARGUMENT:
-            return _apply(_ONE_ARGUMENT[name], *arguments)
-        return reduce(lambda a, b: _apply(_MANY_ARGUMENTS[name], a, b), arguments)
+        if name in FUNCTIONS:
+            return _apply(FUNCTIONS[name][0], *arguments)
+        return reduce(lambda a, b: _apply(OF_MANY[name], a, b), arguments)
 
 
-def _check_count(name: str, count: int) -> None:
-    if name in _MANY_ARGUMENTS and count < 2:
-        raise ExpressionError(f"{name} takes two or more arguments, not {count}")
-    wanted = {"where": 3}.get(name, 1)
-    if name not in _MANY_ARGUMENTS and count != wanted:
-        raise ExpressionError(f"{name} takes {wanted} argument{'s' * (wanted > 1)}, not {count}")
+def _refuse_library(tree: ast.Attribute) -> None:
+    """Raise for ``np.sin``, which is ``sin`` here; do nothing for another attribute."""
+    if isinstance(tree.value, ast.Name) and (
+        hint := library_hint(tree.value.id, tree.attr, RESERVED)
+    ):
+        raise ExpressionError(hint)

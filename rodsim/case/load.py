@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import math
 import os
+import shlex
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -15,9 +16,11 @@ from rodsim.case.messages import explain, yaml_path
 from rodsim.case.model import Case
 from rodsim.case.overrides import apply_overrides
 from rodsim.case.places import Place, named
+from rodsim.case.slips import below, section_slips
 from rodsim.case.source import Source
-from rodsim.case.yaml_text import Path, parse
+from rodsim.case.yaml_text import Path, compose
 from rodsim.errors import CaseError, Problem, UsageError
+from rodsim.files import HDF5_SIGNATURE
 
 LARGEST_FILE = 1_000_000  # bytes; a case is a few hundred
 MOST_PROBLEMS = 100
@@ -32,8 +35,8 @@ def load_case(path: str | os.PathLike, overrides: Iterable[str] = ()) -> Case:
         raise UsageError('overrides must be texts in a list, such as ["time.end=0.01"]')
     name = os.fspath(path)
     text = _read(name)
-    data, lines = parse(text, lambda line: f"{name}:{line}")
-    return _build(Source(name, text, tuple(overrides), data, lines, Place(Case)))
+    data, lines, problems = compose(text, lambda line: f"{name}:{line}")
+    return _build(Source(name, text, tuple(overrides), data, lines, Place(Case)), problems)
 
 
 def case_from_mapping(
@@ -44,7 +47,7 @@ def case_from_mapping(
     ``path`` stands for the file in messages. Raises CaseError as ``load_case`` does.
     """
     root = Place(Case)
-    return _build(Source(path, "", tuple(overrides), copy.deepcopy(dict(data)), {}, root))
+    return _build(Source(path, "", tuple(overrides), copy.deepcopy(dict(data)), {}, root), [])
 
 
 def _read(name: str) -> str:
@@ -55,9 +58,13 @@ def _read(name: str) -> str:
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
         reason = getattr(error, "strerror", None) or str(error)
         raise CaseError([Problem(name, "", None, f"cannot read: {reason}")]) from None
-    if len(data) > LARGEST_FILE:
+    if len(data) > LARGEST_FILE and not data.startswith(HDF5_SIGNATURE):
         reason = f"larger than {LARGEST_FILE} bytes: this is not a case file"
         raise CaseError([Problem(name, "", None, reason)])
+    if data.startswith(HDF5_SIGNATURE):
+        quoted = shlex.quote(name)
+        reason = f"is an output, not a case: go on with rodsim resume {quoted}, or see rodsim info"
+        raise CaseError([Problem(name, "", None, f"{reason} {quoted}")])
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -66,13 +73,13 @@ def _read(name: str) -> str:
         raise CaseError([Problem(f"{name}:{line}", "", None, reason)]) from None
 
 
-def _build(source: Source) -> Case:
+def _build(source: Source, problems: list[Problem]) -> Case:
     """Apply the overrides, validate each section, check across sections."""
     if not isinstance(source.data, dict):
         found = "is empty" if source.data is None else "has no keys"
         reason = f"the file {found}: a case needs fluid, rods and time (see 'rodsim new')"
         raise CaseError([Problem(source.where(()), "", None, reason)])
-    problems = apply_overrides(source)
+    problems = problems + apply_overrides(source)
     case, wrong = _validate(source)
     errors, warnings = check(case, _rod_names(source))
     problems += wrong
@@ -95,9 +102,11 @@ def _validate(source: Source) -> tuple[Case, list[Problem]]:
         return Case.model_validate(data, context=context), []
     except ValidationError as error:
         details = error.errors(include_url=False, include_input=False)
-    problems = list(dict.fromkeys(explain(detail, source) for detail in details[:MOST_PROBLEMS]))
+    slips = section_slips(source)
     bad = [yaml_path(detail["loc"], source.data) for detail in details]
-    return _valid_part(data, bad, context), problems
+    told = [d for d, path in zip(details, bad, strict=True) if not below(path, slips)]
+    problems = [*slips.values(), *(explain(detail, source) for detail in told[:MOST_PROBLEMS])]
+    return _valid_part(data, bad, context), list(dict.fromkeys(problems))
 
 
 def _valid_part(data: dict, bad: list[Path], context: dict) -> Case:
@@ -146,7 +155,8 @@ def _parameters(data: dict) -> dict[str, float]:
 
 def _rod_names(source: Source) -> list[str]:
     rods = source.value(("rods",))
-    return list(rods) if isinstance(rods, dict) else []
+    named_so = isinstance(rods, dict) and not section_slips(source)
+    return list(rods) if named_so else []
 
 
 def _in_order(problems: list[Problem]) -> list[Problem]:

@@ -6,6 +6,25 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import Any
 
+# What other programs and papers call it; each counts only where the word it stands for may stand.
+SYNONYMS = {
+    **dict.fromkeys(("circle", "circular", "loop", "torus", "annulus", "closed"), "ring"),
+    **dict.fromkeys(("line", "linear", "rod", "filament", "fiber", "fibre"), "straight"),
+    **dict.fromkeys(("spiral", "coil", "helical"), "helix"),
+    **dict.fromkeys(("wave", "sinus", "sinusoid", "sinusoidal"), "sine"),
+    **dict.fromkeys(("table", "txt", "csv", "h5", "hdf5", "restart"), "file"),
+    **dict.fromkeys(("mu", "eta", "dynamic_viscosity"), "viscosity"),
+    **dict.fromkeys(("dt", "timestep", "time_step", "step_size"), "step"),
+    **dict.fromkeys(("t_end", "tend", "tmax", "t_max", "t_final", "duration", "stop"), "end"),
+    **dict.fromkeys(("tol", "rtol", "atol", "accuracy"), "tolerance"),
+    **dict.fromkeys(("n", "nodes", "num_points", "n_points", "resolution"), "points"),
+    **dict.fromkeys(("ds", "dx"), "spacing"),
+    **dict.fromkeys(("curvature", "omega", "rest_curvature"), "strain_twist"),
+    **{f"a{name}": f"arc{name}" for name in ("sin", "cos", "tan", "tan2")},
+    **{"ln": "log", "fabs": "abs", "sgn": "sign", "step": "heaviside", "theta": "heaviside"},
+    **{"minimum": "min", "maximum": "max", "if": "where", "iif": "where"},
+    **{"rk": "rk4", "runge_kutta": "rk4", "forward_euler": "euler"},
+}
 LONGEST_WORD = 60  # comparing words is quadratic; nobody mistypes longer names than this
 LONGEST_VALUE = 60
 
@@ -15,6 +34,8 @@ def did_you_mean(word: str, choices: Iterable[str]) -> str:
     if len(word) > LONGEST_WORD:
         return ""
     lowered = {choice.lower(): choice for choice in choices}
+    if SYNONYMS.get(word.lower()) in lowered:
+        return f": did you mean '{lowered[SYNONYMS[word.lower()]]}'?"
     close = get_close_matches(word.lower(), lowered, n=1, cutoff=0.6)
     return f": did you mean '{lowered[close[0]]}'?" if close else ""
 

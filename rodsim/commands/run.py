@@ -15,6 +15,7 @@ from rodsim.commands.common import (
     threads_option,
     warn,
 )
+from rodsim.files import DEFAULT_OUTPUT
 
 
 @click.command()
@@ -23,7 +24,7 @@ from rodsim.commands.common import (
     "-o",
     "--output",
     type=click.Path(path_type=Path, dir_okay=False),
-    default="out.h5",
+    default=DEFAULT_OUTPUT,
     show_default=True,
     help="Output file; one that exists is renamed to out.1.h5, ...",
 )

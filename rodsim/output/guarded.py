@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 
 import h5py
@@ -12,6 +13,7 @@ from rodsim.errors import FileError
 # Deflate packs a thousandfold at best: a dataset larger than that has no contents in this file,
 # and reading it would only fill the memory.
 PACKING = 2000
+CASES = (".yaml", ".yml")  # suffixes
 OWN_FILTERS = {1, 2, 3, 4, 5, 6, 32000}  # deflate ... scale-offset, and LZF, which h5py brings
 ATTRIBUTE_KINDS = {str: "", bool: "b", int: "iu", float: "f"}
 
@@ -29,7 +31,7 @@ class GuardedFile:
             raise FileError(f"{path}: no such file")
         try:
             if not (self.path.is_file() and h5py.is_hdf5(self.path)):
-                raise FileError(f"{path}: not an HDF5 file")
+                raise FileError(f"{path}: not an HDF5 file{_case_hint(self.path)}")
             self._file = h5py.File(self.path, "r", locking=False)
         except OSError as error:
             raise FileError(f"{path}: cannot be opened, damaged or cut short ({error})") from error
@@ -161,6 +163,13 @@ class GuardedFile:
         if not isinstance(node, kind):
             raise self.damaged(f"{name} is not a {kind.__name__.lower()}")
         return node
+
+
+def _case_hint(path):
+    """Return what to do where a case was given instead of its output."""
+    if path.suffix not in CASES or not path.is_file():
+        return ""
+    return f", but a case? First rodsim run {shlex.quote(str(path))}, then give its output"
 
 
 def _foreign_filter(data):

@@ -155,6 +155,7 @@ def _march(machine, state, recorder, stop, progress):
     try:
         if recorder.next_frame == 0:
             recorder.initial(state)
+        watch.output = str(recorder.writer.path)
         for step in integrator.steps(state, end):
             watch.check(step)
             new = recorder.passed(step)

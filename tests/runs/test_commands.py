@@ -128,7 +128,7 @@ def test_a_step_above_its_limit_is_refused_before_anything_is_written(here):
     """40 points: 2/rho is 7.35e-5 s."""
     run = call("run", RING, *SHORT, *EULER, "--set", "time.step=1e-4")
     assert run.exit_code == 2
-    assert "--set: time.step = 0.0001: is above the largest stable step of euler" in run.stderr
+    assert "--set: time.step = 0.0001 (s): is above the largest stable step of euler" in run.stderr
     assert "7.3" in run.stderr
     assert "--force" in run.stderr
     assert list(here.iterdir()) == []
@@ -171,7 +171,7 @@ output: {interval: 1.0e-4}
 
 
 def test_a_forced_run_that_diverges_keeps_its_frames_and_says_what_to_do(here):
-    run = call("run", RING, *SHORT, *EULER, "--set", "time.step=1e-4", "--force")
+    run = call("run", RING, "-o", "a b.h5", *SHORT, *EULER, "--set", "time.step=1e-4", "--force")
     assert run.exit_code == 3
     assert "diverged in step" in run.stderr
     assert "rod 'ring', point" in run.stderr
@@ -179,7 +179,9 @@ def test_a_forced_run_that_diverges_keeps_its_frames_and_says_what_to_do(here):
     assert "Traceback" not in run.stderr
     advice = shlex.split(run.stderr.partition("Try: rodsim ")[2].splitlines()[0])
     assert advice[:2] == ["run", RING]
-    with open_trajectory("out.h5") as trajectory:
+    assert advice[-2:] == ["-o", "a b.h5"]
+    assert sum(word.startswith("time.integrator=") for word in advice) == 1
+    with open_trajectory("a b.h5") as trajectory:
         assert trajectory.status == "diverged"
         assert trajectory.frames >= 2
         assert f"Last good frame: {trajectory.frames - 1}" in run.stderr
@@ -268,6 +270,8 @@ def test_version():
     [
         (("energy", "missing.h5"), "missing.h5: no such file"),
         (("energy", "text.h5"), "not an HDF5 file"),
+        (("plot", RING), f"not an HDF5 file, but a case? First rodsim run {RING}, then give its"),
+        (("resume", RING), "not an HDF5 file, but a case? First rodsim run"),
         (("info", "text.h5"), "not an HDF5 file"),
         (("run", RING, "-o", "no/such/folder/out.h5"), "no folder"),
     ],

@@ -107,6 +107,9 @@ def test_a_table_has_a_run_per_row_and_meets_the_lists(here):
 @pytest.mark.parametrize(
     ("settings", "table", "error", "words"),
     [
+        (["rods.ring.strain_twist=[1.2, 0, 0.5]"], None, CaseError,
+         "rods.ring.strain_twist = [1.2, 0, 0.5]: one run for each entry, and none is a list: "
+         "write [[1.2, 0, 0.5]] for one value that is this list"),
         (["time.end=[0.02, -3]"], None, CaseError, "time.end = -3: must be > 0"),
         (["time.ende=[0.02]"], None, CaseError, "did you mean 'end'"),
         (["time.end=[]"], None, UsageError, "0 runs"),

@@ -31,6 +31,12 @@ P = {"k": 1.25, "b": 0.6, "sigma": 40.0}
         ("tanh(s)*tan(s) + cos(s) + abs(-s)",
          lambda s: math.tanh(s) * math.tan(s) + math.cos(s) + s),
         ("1\n+ s", lambda s: 1 + s),
+        ("arcsin(s/2)*arccos(-s/3)", lambda s: math.asin(s / 2) * math.acos(-s / 3)),
+        ("arctan(s - 2) - arctan2(-s, t - 1)",
+         lambda s: math.atan(s - 2) - math.atan2(-s, -0.6)),
+        ("sinh(s) / cosh(2*s)", lambda s: math.sinh(s) / math.cosh(2 * s)),
+        ("sign(s - 0.3) + 10*floor(-s)", lambda s: math.copysign(s != 0.3, s - 0.3) + 10 * math.floor(-s)),
+        ("7*heaviside(s - 0.3)", lambda s: 3.5 if s == 0.3 else 7.0 * (s > 0.3)),
     ],
 )  # fmt: skip
 def test_value(text, value):
@@ -75,6 +81,15 @@ def test_invalid_is_nan_without_a_warning():
         ("sinn(s)", "unknown function 'sinn': did you mean 'sin'?"),
         ("k(s)", "unknown function 'k'"),
         ("sin", "'sin' is a function"),
+        ("atan(s)", "did you mean 'arctan'?"),
+        ("asin(s)", "did you mean 'arcsin'?"),  # and not 'sin', which is nearer by letters
+        ("atan2(s, t)", "did you mean 'arctan2'?"),
+        ("ln(s)", "did you mean 'log'?"),
+        ("np.sin(t)", "write sin(...), without 'np.'"),
+        ("2*numpy.pi*t", "write pi, without 'numpy.'"),
+        ("math.atan(t)", "there is no 'math' here: did you mean 'arctan'?"),
+        ("arctan2(s)", "arctan2 takes 2 arguments, not 1"),
+        ("0,5*s", "decimals have a point"),
         ("2(s + 1)", "did you leave out a '*'"),
         ("2 s", "not an expression"),
         ("", "empty"),
