@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 
 from rodsim.case import Case, case_schema, template
-from rodsim.case.functions import NAMES
 from rodsim.case.fields import ANGLES, DIMENSIONS
+from rodsim.case.functions import NAMES
 from rodsim.case.model import Units
 from rodsim.units import unit_text
 
@@ -50,9 +50,9 @@ TAIL = """## Expressions
 The entries of `strain_twist` are numbers, or expressions in the arc length `s`, the time `t`, `pi`
 and the names in `parameters`, with `+ - * / ** %`, the comparisons `< <= > >=` and the functions
 {functions};
-`where(condition, a, b)` chooses, `arctan2(y, x)` is an angle, `heaviside(0)` is 1/2. The first point
-of a rod is at s = 0; strain twist is taken at the middle of each segment. Nothing in a case file can
-run code.
+`where(condition, a, b)` chooses, `arctan2(y, x)` is an angle, `heaviside(0)` is 1/2. The first
+point of a rod is at s = 0; strain twist is taken at the middle of each segment. Nothing in a case
+file can run code.
 
 abs(Omega) times the spacing must be at most 2 (no discrete rod has more strain twist at rest);
 above 1 there is a warning.

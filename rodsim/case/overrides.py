@@ -12,7 +12,6 @@ from rodsim.case.words import clipped, did_you_mean, dotted, one_of
 from rodsim.case.yaml_text import parse
 from rodsim.errors import CaseError, Problem
 
-
 MOST_PLACES = 3  # that a message names
 
 

@@ -21,9 +21,15 @@ SYNONYMS = {
     **dict.fromkeys(("ds", "dx"), "spacing"),
     **dict.fromkeys(("curvature", "omega", "rest_curvature"), "strain_twist"),
     **{f"a{name}": f"arc{name}" for name in ("sin", "cos", "tan", "tan2")},
-    **{"ln": "log", "fabs": "abs", "sgn": "sign", "step": "heaviside", "theta": "heaviside"},
-    **{"minimum": "min", "maximum": "max", "if": "where", "iif": "where"},
-    **{"rk": "rk4", "runge_kutta": "rk4", "forward_euler": "euler"},
+    **dict.fromkeys(("ln", "log10"), "log"),
+    **dict.fromkeys(("unit_step", "theta"), "heaviside"),
+    **dict.fromkeys(("if", "iif", "piecewise"), "where"),
+    **dict.fromkeys(("rk", "runge_kutta"), "rk4"),
+    "fabs": "abs",
+    "sgn": "sign",
+    "minimum": "min",
+    "maximum": "max",
+    "forward_euler": "euler",
 }
 LONGEST_WORD = 60  # comparing words is quadratic; nobody mistypes longer names than this
 LONGEST_VALUE = 60
