@@ -35,7 +35,8 @@ P = {"k": 1.25, "b": 0.6, "sigma": 40.0}
         ("arctan(s - 2) - arctan2(-s, t - 1)",
          lambda s: math.atan(s - 2) - math.atan2(-s, -0.6)),
         ("sinh(s) / cosh(2*s)", lambda s: math.sinh(s) / math.cosh(2 * s)),
-        ("sign(s - 0.3) + 10*floor(-s)", lambda s: math.copysign(s != 0.3, s - 0.3) + 10 * math.floor(-s)),
+        ("sign(s - 0.3) + 10*floor(-s)",
+         lambda s: math.copysign(s != 0.3, s - 0.3) + 10 * math.floor(-s)),
         ("7*heaviside(s - 0.3)", lambda s: 3.5 if s == 0.3 else 7.0 * (s > 0.3)),
     ],
 )  # fmt: skip
