@@ -6,6 +6,7 @@ For notebooks and tests: arrays are (n, 3), one row per point. A run calls the k
 
 import numpy as np
 
+from rodsim.compiled.threads import computing
 from rodsim.errors import UsageError
 from rodsim.flows.blobs import BLOBS
 from rodsim.flows.free import pressure_kernel, velocity_kernel
@@ -40,14 +41,9 @@ def velocity(
     targets, sources, loads = _arrays(targets, sources, forces, torques)
     kernel = velocity_kernel(_blob(blob), False, bool(angular))
     out = np.empty((6 if angular else 3, targets.shape[1]))
-    kernel(
-        targets,
-        sources,
-        loads,
-        _positive(epsilon, "epsilon"),
-        _positive(viscosity, "viscosity"),
-        out,
-    )
+    fluid = _positive(epsilon, "epsilon"), _positive(viscosity, "viscosity")
+    with computing():
+        kernel(targets, sources, loads, *fluid, out)
     return out[:3].T.copy(), (out[3:].T.copy() if angular else None)
 
 
@@ -58,7 +54,9 @@ def pressure(targets, sources, forces, epsilon, *, blob="algebraic7"):
     """
     targets, sources, loads = _arrays(targets, sources, forces, np.zeros_like(forces, dtype=float))
     out = np.empty(targets.shape[1])
-    pressure_kernel(_blob(blob))(targets, sources, loads, _positive(epsilon, "epsilon"), out)
+    kernel, epsilon = pressure_kernel(_blob(blob)), _positive(epsilon, "epsilon")
+    with computing():
+        kernel(targets, sources, loads, epsilon, out)
     return out
 
 
