@@ -15,7 +15,6 @@ import rodsim
 from rodsim.compiled.folder import private_folder, writable_folder
 from rodsim.errors import UsageError
 
-
 _not_kept = []
 LAYERS = ("default", "tbb", "omp", "workqueue", "safe", "threadsafe", "forksafe")
 
@@ -33,7 +32,8 @@ def prepare() -> None:
     layer = os.environ.get("NUMBA_THREADING_LAYER", "tbb")
     if layer not in LAYERS:
         raise UsageError(
-            f"NUMBA_THREADING_LAYER={layer}: there is none; unset it, or set one of {', '.join(LAYERS)}"
+            f"NUMBA_THREADING_LAYER={layer}: there is none; unset it, or set one of "
+            + ", ".join(LAYERS)
         )
     if layer == "tbb":
         os.environ["NUMBA_THREADING_LAYER"] = "tbb" if load_tbb() else "default"

@@ -55,7 +55,8 @@ def computing():
     if layer == "omp" and _started_in.get(layer) != os.getpid() and _gnu():
         raise UsageError(
             "this process was forked from one that has started the threads of GNU OpenMP, and "
-            "cannot compute: use multiprocessing.get_context('spawn'), or pip install 'rodsim[fast]'"
+            "cannot compute: use multiprocessing.get_context('spawn'), or "
+            "pip install 'rodsim[fast]'"
         )
     if layer != "workqueue":
         yield
