@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import Any
 
+from rodsim.text import printable
+
 # What other programs and papers call it; each counts only where the word it stands for may stand.
 SYNONYMS = {
     **dict.fromkeys(("circle", "circular", "loop", "torus", "annulus", "closed"), "ring"),
@@ -55,7 +57,7 @@ def one_of(choices: Iterable[str]) -> str:
 def clipped(text: str, most: int = LONGEST_VALUE) -> str:
     """Return the text on one line, without control characters, and not too long."""
     text = text if len(text) <= most else text[: most - 3] + "..."
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    return printable(text).replace("\n", "\\n")
 
 
 def dotted(path: Iterable[str | int]) -> str:

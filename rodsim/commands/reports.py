@@ -6,6 +6,8 @@ from rodsim.errors import FileError
 from rodsim.run.recorder import frame_times
 from rodsim.scene.build import build_scene
 
+MOST_RODS = 50  # described one by one
+
 
 def describe_case(case, refuse=False) -> str:
     """Return the resolved scene, its fastest rate, and the stable step of every integrator.
@@ -18,12 +20,13 @@ def describe_case(case, refuse=False) -> str:
     scene = build_scene(case)
     unit = case.units
     lines = [case.title] if case.title else []
-    for r, name in enumerate(scene.rods.names):
+    for r, name in enumerate(scene.rods.names[:MOST_RODS]):
         kind = "closed" if scene.rods.closed[r] else "open"
         lines.append(
             f"rod {name}: {scene.rods.count[r]} points, {kind}, length "
             f"{scene.rods.lengths[r]:.6g} {unit.length}, spacing {scene.rods.spacing[r]:.6g}"
         )
+    lines += _more_rods(len(scene.rods.names))
     lines.append(
         f"fluid: viscosity {scene.viscosity:.6g} {unit.mass} {unit.length}^-1 {unit.time}^-1, "
         f"{scene.blob}, epsilon {scene.epsilon:.6g} {unit.length} "
@@ -42,6 +45,10 @@ def describe_case(case, refuse=False) -> str:
     if refuse:
         lines += [f"warning: {problem}" for problem in check_step(case, limits)]
     return "\n".join([*lines, *describe_limits(limits, unit.time)])
+
+
+def _more_rods(count: int) -> list[str]:
+    return [f"and {count - MOST_RODS} more rods"] if count > MOST_RODS else []
 
 
 def describe_limits(limits, time_unit: str) -> list[str]:
@@ -110,9 +117,10 @@ def describe_output(path) -> str:
             f"{run.frames} of {len(run.planned)} frames, {last}",
             f"written by rodsim {run.version}, {run.created}; format {run.format}",
         ]
-        for rod in run.rods:
+        for rod in run.rods[:MOST_RODS]:
             kind = "closed" if rod.closed else "open"
             lines.append(f"rod {rod.name}: {rod.count} points, {kind}, spacing {rod.spacing:g}")
+        lines += _more_rods(len(run.rods))
         lines.append(f"fields: {', '.join(run.fields)}")
         lines.append(f"observables: {', '.join(run.observables)}")
         lines += [

@@ -7,6 +7,7 @@ from rodsim.commands.common import (
     max_wall_option,
     output_argument,
     prepare_numba,
+    say,
     set_option,
     threads_option,
     warn,
@@ -35,9 +36,9 @@ def resume(output, overrides, threads, max_wall, quiet):
     with open_past(output, overrides) as past:
         case, complete = past.case, past.complete
     if complete:
-        quiet or click.echo(f"{output}: is finished; a later end: --set time.end=...", err=True)
+        quiet or say(f"{output}: is finished; a later end: --set time.end=...")
         return
-    compiled = ensure_compiled(case, lambda line: quiet or click.echo(line, err=True))
+    compiled = ensure_compiled(case, lambda line: quiet or say(line))
     from rodsim.run.simulate import Summary, resume
 
     summary = Summary(compile_seconds=compiled)

@@ -10,6 +10,7 @@ from rodsim.commands.common import (
     load,
     max_wall_option,
     prepare_numba,
+    say,
     say_warnings,
     set_option,
     threads_option,
@@ -45,17 +46,17 @@ def run(case_path, output, overrides, threads, max_wall, overwrite, force, dry_r
     say_warnings(case)
     prepare_numba()
     if dry_run:
-        click.echo(reports.describe_case(case, refuse=not force))
+        say(reports.describe_case(case, refuse=not force), err=False)
         return
     from rodsim.progress import make_progress
     from rodsim.run.warmup import ensure_compiled
 
-    compiled = ensure_compiled(case, lambda line: quiet or click.echo(line, err=True))
+    compiled = ensure_compiled(case, lambda line: quiet or say(line))
     from rodsim.run.simulate import Summary, simulate
 
     def inform(limits):
         if not quiet:
-            click.echo("\n".join(reports.describe_limits(limits, case.units.time)), err=True)
+            say("\n".join(reports.describe_limits(limits, case.units.time)))
 
     summary = Summary(compile_seconds=compiled)
     label = case.title or case_path.name

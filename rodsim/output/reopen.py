@@ -90,7 +90,7 @@ def _check_layout(path, plan):
         for slot in file.names("checkpoint"):
             for name in file.names(f"checkpoint/{slot}"):
                 file.contiguous(f"checkpoint/{slot}/{name}", "fiub", None)
-        file.array("VTKHDF/Steps/Values", "f", (None,), np.s_[:0])
+        file.growing("VTKHDF/Steps/Values", "f")
         file.attribute("VTKHDF/Steps", "NSteps", int)
         stored = file.attributes("runtime")
         if not stored.keys() >= layout.RUNTIME.keys():

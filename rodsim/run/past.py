@@ -127,10 +127,10 @@ def _read(path, run, overrides, lock):
     snapshot = run.checkpoint()
     if snapshot is None or not {"time", "position", "director", "force"} <= snapshot.keys():
         raise FileError(f"{path}: damaged: neither of its checkpoints is whole")
+    resolved = run.case_data()
     try:
-        resolved = json.loads(run.case_resolved)
         before = case_from_mapping(resolved, path=f"{path}: case")
-    except (ValueError, RecursionError, TypeError, CaseError) as error:
+    except (ValueError, TypeError, CaseError) as error:
         raise FileError(f"{path}: damaged: its case cannot be read ({error})") from error
     case = case_from_mapping(resolved, overrides, path=f"{path}: case")
     problems = [*_forbidden(path, before.resolved(), case.resolved()), *_not_computable(run, case)]

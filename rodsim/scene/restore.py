@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 
 from rodsim.case import case_from_mapping
@@ -21,7 +19,7 @@ def restore_scene(run) -> Scene:
     if run.frames == 0:
         raise FileError(f"{run.path}: has no frames yet ({run.status})")
     try:
-        case = case_from_mapping(json.loads(run.case_resolved), path=str(run.path))
+        case = case_from_mapping(run.case_data(), path=str(run.path))
         entries = [case.rods[rod.name].strain_twist for rod in run.rods]
     except (ValueError, KeyError, TypeError, RecursionError, CaseError) as error:
         raise FileError(f"{run.path}: damaged: the case in it cannot be used: {error}") from error
