@@ -8,13 +8,16 @@ import platform
 import shutil
 import sys
 import tempfile
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
+from zlib import crc32
 
 import rodsim
 from rodsim.compiled.folder import private_folder, writable_folder
 from rodsim.errors import UsageError
 
+COMPILERS = ("numba", "llvmlite", "numpy")
 _not_kept = []
 LAYERS = ("default", "tbb", "omp", "workqueue", "safe", "threadsafe", "forksafe")
 
@@ -134,10 +137,28 @@ def fingerprint() -> str:
     digest = hashlib.sha256(f"{rodsim.__version__} {rodsim.__file__}".encode())
     for source in sorted(Path(rodsim.__file__).parent.rglob("*.py")):
         digest.update(source.read_bytes())
-    versions = [version(name) for name in ("numba", "llvmlite", "numpy")]
+    versions = [version(name) for name in COMPILERS]
     asked = [os.environ.get(name) for name in ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES")]
     digest.update(f"{versions} {sys.version} {platform.machine()} {_processor()} {asked}".encode())
     return digest.hexdigest()[:16]
+
+
+@cache
+def machine() -> dict[str, str]:
+    """Return what the last bits of a result depend on: versions, and what the code is made for.
+
+    The processor as LLVM sees it, its name and a digest of its features.
+    """
+    import llvmlite.binding
+
+    try:
+        found = f"{llvmlite.binding.get_host_cpu_features().flatten()}"
+    except RuntimeError:  # LLVM does not know them on every system
+        found = ""
+    name = os.environ.get("NUMBA_CPU_NAME") or llvmlite.binding.get_host_cpu_name()
+    features = os.environ.get("NUMBA_CPU_FEATURES") or found
+    processor = f"{name[:22]} {crc32(features.encode()):08x}"
+    return {each: version(each) for each in COMPILERS} | {"processor": processor}
 
 
 def _processor():

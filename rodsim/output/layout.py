@@ -61,6 +61,12 @@ RUNTIME = {
     "threads": int,
     "threading_layer": str,
 }
+MACHINE = (
+    "numba",
+    "llvmlite",
+    "numpy",
+    "processor",
+)  # of /runtime too; files of older rodsims lack them
 
 
 @dataclass(frozen=True)

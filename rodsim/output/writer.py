@@ -145,9 +145,11 @@ class TrajectoryWriter:
     def update_runtime(self, runtime: dict) -> None:
         """Set attributes of ``/runtime``: numbers and short texts by name."""
         with self.writing() as file:
+            attrs = file["runtime"].attrs
             for name, value in runtime.items():
-                value = short(value) if isinstance(value, str) else value
-                file["runtime"].attrs.modify(name, value)
+                if name in layout.MACHINE and name not in attrs:
+                    continue  # a file of an older rodsim: nothing may be added to what is there
+                attrs.modify(name, short(value) if isinstance(value, str) else value)
             file.flush()
 
     def sync(self) -> None:
