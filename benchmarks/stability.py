@@ -60,15 +60,15 @@ class TooLong(Exception):
 class Clock:
     """Passes for a progress display, and stops a run that hangs."""
 
-    def __init__(self):
-        self.end = perf_counter() + MOST_SECONDS
+    def __init__(self, patience: float):
+        self.end = perf_counter() + patience
 
     def update(self, fraction, note=""):
         if perf_counter() > self.end:
             raise TooLong
 
 
-def run(case, folder: Path, **time):
+def run(case, folder: Path, patience=MOST_SECONDS, **time):
     """Run a case as the command would; return (last position, summary, or the error)."""
     from rodsim.case import case_from_mapping
     from rodsim.errors import RodsimError
@@ -86,7 +86,7 @@ def run(case, folder: Path, **time):
     summary, output = Summary(), folder / "out.h5"
     try:
         made = case_from_mapping(case, path=str(folder / "case.yaml"))
-        simulate(made, output, overwrite=True, progress=Clock(), summary=summary,
+        simulate(made, output, overwrite=True, progress=Clock(patience), summary=summary,
                  notify=lambda text: None)  # fmt: skip
         failure = None
     except (RodsimError, TooLong) as error:
@@ -124,21 +124,24 @@ def _short(error):
     return text if len(text) < 110 else text[:107] + "..."
 
 
-def fixed_step(case, method, limit, most, folder, reference, length) -> Cell:
+def fixed_step(case, method, limit, most, patience, folder, reference, length) -> Cell:
     """Run euler or rk4 at 0.9 of its limit, whole or a stretch of ``most`` evaluations."""
     end, steps = case["time"]["end"], int(np.ceil(case["time"]["end"] / (SHARE * limit)))
     stretch = STAGES[method] * steps > most
     step = end / steps
     count = most // STAGES[method] if stretch else steps
     settings = {"integrator": method, "step": step, "end": step * count}
-    done = cell(*run(case, folder, **settings), None if stretch else reference, length)
+    done = cell(*run(case, folder, patience, **settings), None if stretch else reference, length)
     if done.status == "finished" and stretch:
         return Cell("finished", evaluations=STAGES[method] * steps, stretch=True)
     return done
 
 
-def measure(case, methods, most) -> dict:
-    """Return a cell for each method, and the fastest rate of the scene."""
+def measure(case, methods, most, patience=MOST_SECONDS) -> dict:
+    """Return a cell for each method, and the fastest rate of the scene.
+
+    patience : seconds after which a run is stopped.
+    """
     from rodsim.case import case_from_mapping
     from rodsim.errors import RodsimError
     from rodsim.integrators.limits import stability
@@ -148,7 +151,9 @@ def measure(case, methods, most) -> dict:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         tolerance = case["time"]["tolerance"]
-        reference, _, failure = run(case, folder, tolerance=max(1e-12, TIGHTER * tolerance))
+        reference, _, failure = run(
+            case, folder, patience, tolerance=max(1e-12, TIGHTER * tolerance)
+        )
         reference = None if failure else reference
         plain = {key: value for key, value in case.items() if key != "table"}
         try:
@@ -159,11 +164,13 @@ def measure(case, methods, most) -> dict:
         cells = {"rate": limits.rate}
         for method in methods:
             if method == "rkc":
-                cells[method] = cell(*run(case, folder), reference, length)
+                cells[method] = cell(*run(case, folder, patience), reference, length)
             else:
                 limit = limits.largest_steps[method]
                 few = min(most, max(100, int(MOST_PAIRS / scene.rods.points**2)))
-                cells[method] = fixed_step(case, method, limit, few, folder, reference, length)
+                cells[method] = fixed_step(
+                    case, method, limit, few, patience, folder, reference, length
+                )
         return cells
 
 

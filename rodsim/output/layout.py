@@ -61,12 +61,8 @@ RUNTIME = {
     "threads": int,
     "threading_layer": str,
 }
-MACHINE = (
-    "numba",
-    "llvmlite",
-    "numpy",
-    "processor",
-)  # of /runtime too; files of older rodsims lack them
+# of /runtime too; files of older versions lack them
+MACHINE = ("numba", "llvmlite", "numpy", "processor")
 
 
 @dataclass(frozen=True)

@@ -263,7 +263,7 @@ def real_cluster(folder):
              "--nthreads", "1", "--no-dashboard"]  # fmt: skip
     processes = [subprocess.Popen(start, **quiet)]
     try:
-        wait_for(file.exists)
+        wait_for(file.exists, *processes)
         processes += [subprocess.Popen(serve, **quiet) for _ in range(2)]
         yield json.loads(file.read_text())["address"], processes[1:]
     finally:
@@ -272,12 +272,11 @@ def real_cluster(folder):
             process.wait()
 
 
-def wait_for(condition, seconds=60):
-    for _ in range(20 * seconds):
-        if condition():
-            return
+def wait_for(condition, *processes):
+    """Wait, however busy the machine is, until a condition holds that these will bring about."""
+    while not condition():
+        assert all(process.poll() is None for process in processes), "ended too early"
         time.sleep(0.05)
-    raise AssertionError("waited in vain")
 
 
 def run_of(worker):
@@ -292,13 +291,13 @@ def run_of(worker):
 
 
 def well_begun(worker):
-    """Whether a worker's run has written some frames, but not half of them."""
+    """Whether a worker's run has written some frames, but not all of them."""
     found = run_of(worker)
     if not found:
         return False
     try:
         with open_trajectory(found[1]) as run:
-            return 3 <= run.frames <= 50
+            return 3 <= run.frames < len(run.planned)
     except Exception:  # not there yet
         return False
 
@@ -307,8 +306,7 @@ def start_and_kill_one(arguments, address, workers):
     """Start a sweep, kill a worker and its run in the middle; return (output killed, result)."""
     sweep = [sys.executable, "-m", "rodsim", "sweep", *map(str, arguments), "--scheduler", address]
     with subprocess.Popen(sweep, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as p:
-        wait_for(lambda: p.poll() is not None or well_begun(workers[0]), 300)
-        assert p.poll() is None, p.communicate()
+        wait_for(lambda: well_begun(workers[0]), p)
         process, output = run_of(workers[0])
         workers[0].kill()
         process.kill()
@@ -335,13 +333,21 @@ def test_a_killed_worker_loses_nothing(here):
 
 @pytest.mark.compiled
 def test_ctrl_c_stops_the_runs_and_the_same_command_goes_on(here):
-    arguments = ["sweep", RING, "--set", "rods.ring.shape.points=[60, 64, 68]",
-                 "--set", "time.tolerance=1e-10", "-j", "2"]  # fmt: skip
+    arguments = [
+        "sweep",
+        RING,
+        "--set",
+        "rods.ring.shape.points=[60, 64, 68]",
+        "--set",
+        "time.max_step=1e-8",
+        "-j",
+        "2",
+    ]  # fmt: skip  (an hour each)
     with subprocess.Popen(
         [sys.executable, "-m", "rodsim", *arguments],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     ) as sweep:  # fmt: skip
-        wait_for(lambda: len(list(here.glob("sweep/*/out.h5"))) == 2)
+        wait_for(lambda: len(list(here.glob("sweep/*/out.h5"))) == 2, sweep)
         sweep.send_signal(signal.SIGINT)
         _, said = sweep.communicate()
     assert sweep.returncode == 75

@@ -187,7 +187,7 @@ def test_runtime_can_be_updated_while_running(tmp_path):
         with open_trajectory(tmp_path / "out.h5") as run:
             assert (run.status, run.runtime) == (
                 "running",
-                {"evaluations": 5, "spectral_radius": 2.5},
+                {"evaluations": 5, "spectral_radius": 2.5} | machine(),
             )
 
 
