@@ -94,7 +94,7 @@ def _choose_cache():
         folder = writable_folder(Path(given)) if given else private_folder(cache_folder())
         os.environ["NUMBA_CACHE_DIR"] = str(folder)
     except OSError as error:
-        _not_kept.append(f"{error.filename}: {error.strerror}")
+        _not_kept.append(f"{error.filename or given or cache_folder()}: {error.strerror}")
         if not given:
             _use_temporary_folder()
 

@@ -1,0 +1,11 @@
+"""Prints the oldest versions that pyproject.toml allows, as constraints for pip."""
+
+import re
+import tomllib
+from pathlib import Path
+
+project = tomllib.loads((Path(__file__).parent.parent / "pyproject.toml").read_text())["project"]
+wanted = [*project["dependencies"], *sum(project["optional-dependencies"].values(), [])]
+for text in dict.fromkeys(wanted):
+    if found := re.match(r"([A-Za-z0-9_-]+)>=([0-9.]+)", text):
+        print(f"{found[1]}=={found[2]}")
