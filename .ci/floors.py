@@ -2,10 +2,11 @@
 
 import re
 import tomllib
+from itertools import chain
 from pathlib import Path
 
 project = tomllib.loads((Path(__file__).parent.parent / "pyproject.toml").read_text())["project"]
-wanted = [*project["dependencies"], *sum(project["optional-dependencies"].values(), [])]
+wanted = chain(project["dependencies"], *project["optional-dependencies"].values())
 for text in dict.fromkeys(wanted):
     if found := re.match(r"([A-Za-z0-9_-]+)>=([0-9.]+)", text):
         print(f"{found[1]}=={found[2]}")

@@ -135,7 +135,7 @@ def together_rows(grid: Grid):
 
 def _signed_speed(grid, key):
     run = grid.runs[key]
-    return float(run.velocity[2]) if run.scene.strain_twist.driven else None
+    return float(run.velocity[2]) if run.scene.parts.driven else None
 
 
 def time_rows(scene, blob):

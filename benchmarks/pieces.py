@@ -12,7 +12,7 @@ def sum_of(scene, threads):
     kernel = velocity_kernel(BLOBS[scene.blob], scene.planar)
     position = scene.initial.position
     loads = np.random.default_rng(1).standard_normal((6, scene.rods.points))
-    out = np.empty_like(loads)
+    out = np.zeros_like(loads)
 
     def evaluate():
         numba.set_num_threads(threads)
@@ -23,16 +23,18 @@ def sum_of(scene, threads):
 
 def elasticity_of(scene):
     """Return a function that turns a scene's triads and computes its point loads once."""
+    from rodsim.compiled.parts import FORCE
     from rodsim.compiled.rotations import rotate
     from rodsim.forces.elasticity import point_loads
 
     state = scene.initial
     theta, director = np.zeros_like(state.position), np.empty_like(state.director)
-    internal, loads = np.empty((2, 6, scene.rods.points))
+    loads, (elastic,) = np.empty((6, scene.rods.points)), scene.parts.of(FORCE)
 
     def evaluate():
         rotate(theta, state.director, director)
-        omega = scene.strain_twist(0.0)
-        point_loads(state.position, director, omega, scene.rods.tables, internal, loads)
+        omega = elastic.row(0.0).reshape(3, -1)
+        loads[:] = 0.0
+        point_loads(state.position, director, omega, scene.rods.tables, loads)
 
     return evaluate

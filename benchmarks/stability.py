@@ -21,8 +21,9 @@ from common import benchmark
 from extremes import SCENES
 from tables import Table
 
-METHODS = ("rkc", "euler", "rk4")
-STAGES = {"euler": 1, "rk4": 4}
+from rodsim.case.methods import METHODS
+from rodsim.run.listener import Listener, Summary
+
 SHARE = 0.9  # of the longest stable step
 MOST_SECONDS = 60.0
 MOST_PAIRS = 2e9  # of large scenes, euler and rk4 run a shorter stretch
@@ -57,15 +58,22 @@ class TooLong(Exception):
     """A run has not ended in MOST_SECONDS."""
 
 
-class Clock:
-    """Passes for a progress display, and stops a run that hangs."""
+class Clock(Listener):
+    """Stops a run that hangs; keeps how it ended."""
 
     def __init__(self, patience: float):
         self.end = perf_counter() + patience
+        self.summary = Summary()
 
-    def update(self, fraction, note=""):
+    def update(self, fraction, note):
         if perf_counter() > self.end:
             raise TooLong
+
+    def warn(self, text):
+        pass
+
+    def ended(self, summary):
+        self.summary = summary
 
 
 def run(case, folder: Path, patience=MOST_SECONDS, **time):
@@ -73,7 +81,7 @@ def run(case, folder: Path, patience=MOST_SECONDS, **time):
     from rodsim.case import case_from_mapping
     from rodsim.errors import RodsimError
     from rodsim.output import open_trajectory
-    from rodsim.run.simulate import Summary, simulate
+    from rodsim.run.simulate import simulate
 
     case = dict(case)
     table = case.pop("table", None)
@@ -83,14 +91,14 @@ def run(case, folder: Path, patience=MOST_SECONDS, **time):
     step = case["time"].get("step")
     count = round(case["time"]["end"] / step) if step else FRAMES
     case["output"] = {"interval": -(-count // FRAMES) * (step or case["time"]["end"] / FRAMES)}
-    summary, output = Summary(), folder / "out.h5"
+    clock, output = Clock(patience), folder / "out.h5"
     try:
         made = case_from_mapping(case, path=str(folder / "case.yaml"))
-        simulate(made, output, overwrite=True, progress=Clock(patience), summary=summary,
-                 notify=lambda text: None)  # fmt: skip
+        simulate(made, output, overwrite=True, listener=clock)
         failure = None
     except (RodsimError, TooLong) as error:
         failure = error
+    summary = clock.summary
     if summary.status == "running":
         return None, summary, failure
     with open_trajectory(output) as result:
@@ -127,13 +135,13 @@ def _short(error):
 def fixed_step(case, method, limit, most, patience, folder, reference, length) -> Cell:
     """Run euler or rk4 at 0.9 of its limit, whole or a stretch of ``most`` evaluations."""
     end, steps = case["time"]["end"], int(np.ceil(case["time"]["end"] / (SHARE * limit)))
-    stretch = STAGES[method] * steps > most
+    stretch = METHODS[method].stages * steps > most
     step = end / steps
-    count = most // STAGES[method] if stretch else steps
+    count = most // METHODS[method].stages if stretch else steps
     settings = {"integrator": method, "step": step, "end": step * count}
     done = cell(*run(case, folder, patience, **settings), None if stretch else reference, length)
     if done.status == "finished" and stretch:
-        return Cell("finished", evaluations=STAGES[method] * steps, stretch=True)
+        return Cell("finished", evaluations=METHODS[method].stages * steps, stretch=True)
     return done
 
 
@@ -163,7 +171,7 @@ def measure(case, methods, most, patience=MOST_SECONDS) -> dict:
         length, limits = scene.length_scale, stability(RodSystem(scene))
         cells = {"rate": limits.rate}
         for method in methods:
-            if method == "rkc":
+            if METHODS[method].adaptive:
                 cells[method] = cell(*run(case, folder, patience), reference, length)
             else:
                 limit = limits.largest_steps[method]

@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 
 from rodsim.case import Case, case_schema, template
+from rodsim.case.expressions import FUNCTIONS
 from rodsim.case.fields import ANGLES, DIMENSIONS
-from rodsim.case.functions import NAMES
 from rodsim.case.model import Units
 from rodsim.units import unit_text
 
@@ -76,7 +76,7 @@ def page() -> str:
     if missing := models.keys() - SECTIONS:
         raise SystemExit(f"SECTIONS lacks {', '.join(sorted(missing))}")
     sections = [_section(title, models[name]) for name, title in SECTIONS.items()]
-    functions = ", ".join(f"`{name}`" for name in NAMES)
+    functions = ", ".join(f"`{name}`" for name in FUNCTIONS)
     tail = TAIL.format(functions=functions, example=template("ring"))
     return "\n".join([HEAD, *sections, tail])
 

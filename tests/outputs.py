@@ -2,13 +2,16 @@
 
 import numpy as np
 
-from rodsim.output import CaseText, Plan, RodRecord, TrajectoryWriter
+from rodsim.nodes import Rod, Rods
+from rodsim.output import CaseText, Plan, TrajectoryWriter
 from rodsim.output.layout import FIELDS
 
-RODS = [
-    RodRecord("zeta", 0, 4, False, 0.25, (3.5, 3.6, 3.7, 0.8, 0.9, 0.7)),
-    RodRecord("alpha", 4, 5, True, 0.5, (2.5, 2.6, 2.7, 0.5, 0.6, 0.4)),
-]
+RODS = Rods(
+    (
+        Rod("zeta", 0, 4, False, 0.25, (3.5, 3.6, 3.7, 0.8, 0.9, 0.7)),
+        Rod("alpha", 4, 5, True, 0.5, (2.5, 2.6, 2.7, 0.5, 0.6, 0.4)),
+    )
+)
 TIMES = np.array([0.0, 0.3, 0.6, 0.9, 1.1, 1.7])
 POINTS, TRACERS, UNITS = 9, 7, {"length": "um", "mass": "g", "time": "s"}
 CASE = CaseText("title: écoute\n", '{"title": "écoute"}', ["time.end=1.7", "rods.zeta.points=4"])

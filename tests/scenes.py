@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from rodsim.case import load_case
-from rodsim.integrators import make_integrator
+from rodsim.integrators.make import make_integrator
 from rodsim.scene.build import build_scene
 from rodsim.scene.system import RodSystem
 

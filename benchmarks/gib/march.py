@@ -9,11 +9,11 @@ from gib.coupling import interpolate, spread
 from gib.fluid import Fluid
 from rodsim.compiled.rotations import rotate
 from rodsim.errors import CaseError, DivergedError
-from rodsim.forces.elasticity import point_loads
 from rodsim.output import TrajectoryWriter
 from rodsim.progress import Silent
 from rodsim.run.recorder import plan_output
 from rodsim.scene.build import build_scene
+from rodsim.scene.evaluation import loads_of
 from rodsim.scene.state import State
 from rodsim.scene.system import RodSystem
 
@@ -46,7 +46,7 @@ class ImmersedRods:
         self.fluid = Fluid(setup.n, box, case.fluid.density, case.fluid.viscosity, setup.threads)
         self.state, self.steps = self.scene.initial, 0
         shape = 6, self.scene.rods.points
-        self.loads, self.rates, self._internal = np.empty((3, *shape))
+        self.loads, self.rates = np.empty((2, *shape))
 
     def advance(self) -> None:
         """Loads at X^n, then u^(n+1), then (34), (35): X^n moved by dt U, triads turned by dt W."""
@@ -63,10 +63,7 @@ class ImmersedRods:
 
     def find_loads(self) -> np.ndarray:
         """Return the point loads g over m (6, N) of the present state."""
-        omega, tables = self.scene.strain_twist(self.state.time), self.scene.rods.tables
-        point_loads(
-            self.state.position, self.state.director, omega, tables, self._internal, self.loads
-        )
+        self.loads = loads_of(self.scene, self.state)
         return self.loads
 
     def find_rates(self) -> np.ndarray:

@@ -63,9 +63,9 @@ def tracer_paths(replay: Replay, seeds, first: int, last: int, progress=None) ->
     for row in range(last - first):
         before, after = after, replay.settled_sources(first + row + 1)
         begin, end = replay.run.time[first + row : first + row + 2]
-        moved = _advance(before, after, begin, end, np.vstack([position[row], before.position]))
+        moved = _advance(before, after, begin, end, np.vstack([position[row], before.position.T]))
         position[row + 1] = moved[: len(seeds)]
-        miss[row] = np.abs(moved[len(seeds) :] - after.position).max()
+        miss[row] = np.abs(moved[len(seeds) :] - after.position.T).max()
         if progress:
             progress.update((row + 1) / (last - first), f"t = {end:.4g}")
     return Paths(replay.run.time[first : last + 1], position, miss)

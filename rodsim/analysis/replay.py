@@ -7,37 +7,47 @@ from functools import cached_property
 
 import numpy as np
 
-from rodsim.flows.velocity import pressure, velocity
-from rodsim.forces.elasticity import point_loads
+from rodsim.case.methods import METHODS
+from rodsim.scene.evaluation import fluid_velocity, loads_of
 from rodsim.scene.restore import restore_scene, stored_state
+from rodsim.scene.state import Scene, State
 
 EXACT = 1e-6  # tolerance of a run from which on settling adds more error than it takes away
+NO_TRIADS = np.zeros((3, 3, 0))  # the fluid does not ask for them
 SETTLING = 10  # Euler steps that let the fastest modes of a frame come to rest
 
 
 @dataclass(frozen=True)
 class Sources:
-    """Point forces and torques on the fluid and where they act, (N, 3) each, and the fluid."""
+    """Where the rods are and what they exert on the fluid at a time, and the scene they are in.
 
+    position (3, N), loads (6, N): point forces, then point torques.
+    """
+
+    time: float
     position: np.ndarray
-    forces: np.ndarray
-    torques: np.ndarray
-    scene: object
+    loads: np.ndarray
+    scene: Scene
 
     def velocity(self, points) -> np.ndarray:
-        """Return the velocity (n, 3) of the fluid at points (n, 3), eq. (61)."""
-        scene, loads = self.scene, (self.position, self.forces, self.torques)
-        fluid = scene.epsilon, scene.viscosity
-        return velocity(points, *loads, *fluid, blob=scene.blob, angular=False)[0]
+        """Return the velocity (n, 3) of the fluid at points (n, 3): what tracers there would have.
+
+        By the same parts that move the tracers of the run.
+        """
+        points = np.ascontiguousarray(np.asarray(points, float).T)
+        state = State(self.time, self.position, NO_TRIADS, points)
+        return fluid_velocity(self.scene, state, self.loads).T.copy()
 
     def pressure(self, points) -> np.ndarray:
-        """Return the pressure (n,) at points (n, 3), eq. (62)."""
-        scene = self.scene
-        return pressure(points, self.position, self.forces, scene.epsilon, blob=scene.blob)
+        """Return the pressure (n,) at points (n, 3), the sum of what the parts have of it."""
+        points = np.ascontiguousarray(np.asarray(points, float).T)
+        given = (part.pressure for part in self.scene.parts if part.pressure)
+        sources = points, self.position, self.loads, self.time
+        return sum(pressure(*sources) for pressure in given)
 
     def towards(self, other: Sources, share: float) -> Sources:
         """Return the sources a share of the way from these to others, along straight lines."""
-        pairs = ((getattr(s, n) for s in (self, other)) for n in ("position", "forces", "torques"))
+        pairs = ((getattr(s, n) for s in (self, other)) for n in ("time", "position", "loads"))
         return Sources(*((1.0 - share) * a + share * b for a, b in pairs), self.scene)
 
 
@@ -49,7 +59,7 @@ class Replay:
         self.run = run
         self.scene = restore_scene(run)
         time = run.case_data()["time"]
-        self.rough = time["integrator"] == "rkc" and time["tolerance"] > EXACT
+        self.rough = METHODS[time["integrator"]].adaptive and time["tolerance"] > EXACT
 
     @cached_property
     def _machinery(self):
@@ -63,8 +73,7 @@ class Replay:
     def sources(self, frame: int) -> Sources:
         """Return what the rods of a frame exert on the fluid, eqs. (30), (31)."""
         state = stored_state(self.run, frame)
-        loads = self._loads(state)
-        return Sources(state.position.T.copy(), loads[:3].T.copy(), loads[3:].T.copy(), self.scene)
+        return Sources(state.time, state.position, loads_of(self.scene, state), self.scene)
 
     def settled_sources(self, frame: int) -> Sources:
         """Return the same without what the fastest modes of the rods hold by mistake.
@@ -82,12 +91,11 @@ class Replay:
         rate = self._machinery[1].estimate(state) if frame and self.rough else 0.0
         if not (np.isfinite(rate) and rate > 0.0):
             return self.sources(frame)
-        position = state.position.T.copy()
+        time, position = state.time, state.position
         for _ in range(2):
             state = self._settle(state, 1.0 / rate)
-            loads.append(self._loads(state))
-        g = 2.0 * loads[0] - loads[1]
-        return Sources(position, g[:3].T.copy(), g[3:].T.copy(), self.scene)
+            loads.append(loads_of(self.scene, state))
+        return Sources(time, position, 2.0 * loads[0] - loads[1], self.scene)
 
     def _settle(self, state, step):
         system, _ = self._machinery
@@ -97,14 +105,7 @@ class Replay:
             state = system.state_at(state, state.time + step, increment)
         return state
 
-    def _loads(self, state):
-        internal, loads = np.empty((2, 6, self.scene.rods.points))
-        omega = self.scene.strain_twist(state.time)
-        tables = self.scene.rods.tables
-        point_loads(state.position, state.director, omega, tables, internal, loads)
-        return loads
-
     def settled_velocity(self, frame: int) -> np.ndarray:
         """Return the velocity (N, 3) of all points of the rods in a frame."""
         sources = self.settled_sources(frame)
-        return sources.velocity(sources.position)
+        return sources.velocity(sources.position.T)

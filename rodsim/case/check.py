@@ -16,6 +16,7 @@ from rodsim.case.fields import BYTES_PER_POINT, MOST_POINTS
 from rodsim.case.model import Case, Rod, Spacings, Time, Tube
 from rodsim.case.words import did_you_mean
 from rodsim.case.yaml_text import Path
+from rodsim.registry import kinds
 
 Finding = tuple[Path, str]
 MOST_FRAMES = 10_000_000
@@ -34,6 +35,8 @@ def check(case: Case, rod_names: Iterable[str]) -> tuple[list[Finding], list[Fin
     ``rod_names`` are all rods of the file, also those that did not validate.
     """
     errors = [*_rods(case), *_tracers(case, list(rod_names))]
+    for kind in kinds():
+        errors += kind.check(case) if kind.check else ()
     warnings: list[Finding] = [*_thin(case)]
     if case.time is not None:
         errors += _step_missing(case.time)
@@ -109,17 +112,17 @@ def _has_expression(rod: Rod) -> bool:
 
 
 def _step_missing(time: Time) -> Iterator[Finding]:
-    if time.integrator != "rkc" and time.step is None:
+    if not time.method.adaptive and time.step is None:
         yield ("time", "step"), f"missing: {time.integrator} needs the length of its steps"
 
 
 def _ignored(time: Time) -> Iterator[Finding]:
     """What another method would use: changing ``integrator`` alone must be enough to compare."""
-    if time.integrator == "rkc" and time.step is not None:
-        yield ("time", "step"), "ignored: rkc chooses its steps by the tolerance"
-    if time.integrator != "rkc" and "tolerance" in time.model_fields_set:
+    if time.method.adaptive and time.step is not None:
+        yield ("time", "step"), f"ignored: {time.integrator} chooses its steps by the tolerance"
+    if not time.method.adaptive and "tolerance" in time.model_fields_set:
         yield ("time", "tolerance"), f"ignored: {time.integrator} has a fixed step"
-    if time.integrator != "rkc" and time.max_step is not None:
+    if not time.method.adaptive and time.max_step is not None:
         yield ("time", "max_step"), f"ignored: {time.integrator} has a fixed step"
 
 
@@ -129,7 +132,7 @@ def _frames(case: Case) -> Iterator[Finding]:
     key = ("output", "interval")
     if time.end / interval > MOST_FRAMES:
         yield key, f"would write {time.end / interval:.3g} frames: at most {MOST_FRAMES}"
-    if time.integrator == "rkc" or time.step is None:
+    if time.method.adaptive or time.step is None:
         return
     yield from _multiple(("time", "end"), time.end, time)
     if interval < time.end:  # else only t = 0 and t = end are frames

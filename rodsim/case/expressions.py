@@ -1,92 +1,98 @@
-"""Expressions in s, t and the parameters, as in ``-k**2*b*sin(k*s + sigma*t)``.
+"""Expressions in variables such as s and t and the parameters: ``-k**2*b*sin(k*s + sigma*t)``.
 
-The text is parsed by Python's own parser, every node is checked against a short whitelist, and what
-is left is turned into nested numpy calls. Nothing is ever compiled or executed, so a case file
-cannot run code; numbers are float64 from the start, so ``9**9**9**9`` is inf and not a long wait.
+The text is read by a grammar of its own (``grammar.py``) into a list of operations (``graph.py``)
+that NumPy computes. Nothing is ever compiled or executed, so a case file cannot run code; numbers
+are float64 from the start, so ``9**9**9**9`` is inf and not a long wait.
 """
 
 from __future__ import annotations
 
-import ast
 import keyword
-import re
-import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Iterable, Mapping
 from functools import reduce
 
 import numpy as np
 
-from rodsim.case.functions import FUNCTIONS, NAMES, OF_MANY, library_hint, wrong_count
+from rodsim.case.derivatives import differentiate
+from rodsim.case.functions import FUNCTIONS
+from rodsim.case.grammar import ExpressionError, parse
+from rodsim.case.graph import Graph, Program, bound
 from rodsim.case.words import clipped, did_you_mean, one_of
 
-LONGEST = 1000  # characters
-DEEPEST = 100  # a sum of n terms is n deep
+__all__ = ["FUNCTIONS", "RESERVED", "Expression", "ExpressionError", "evaluate", "names_in"]
 
-_OPERATORS = {
-    ast.Add: np.add,
-    ast.Sub: np.subtract,
-    ast.Mult: np.multiply,
-    ast.Div: np.divide,
-    ast.Pow: np.power,
-    ast.Mod: np.mod,
-    ast.UAdd: np.positive,
-    ast.USub: np.negative,
-    ast.Lt: np.less,
-    ast.LtE: np.less_equal,
-    ast.Gt: np.greater,
-    ast.GtE: np.greater_equal,
-}
-RESERVED = ("s", "t", "pi", *NAMES)
-
-_REFUSED = {
-    ast.Attribute: "attribute access (a dot after a name) is not allowed",
-    ast.IfExp: "'if ... else' is not allowed: write where(condition, a, b)",
-    ast.BoolOp: "'and' and 'or' are not allowed: nest where(condition, a, b)",
-    ast.Not: "'not' is not allowed: turn the comparison round",
-    ast.Lambda: "lambda is not allowed",
-    ast.Tuple: "a comma is only allowed between the arguments of a function; decimals have a point",
-    ast.FloorDiv: "// is not allowed",
-}
-_ODD_CHARACTER = re.compile(r"[^A-Za-z0-9_.+\-*/%()<>, ]")
-_ODD_CHARACTER_HINTS = {
-    "^": "use ** for powers, not ^",
-    "=": "'=' is not allowed: the comparisons are < <= > >=",
-    "'": "text in quotes is not allowed",
-    '"': "text in quotes is not allowed",
-}
-
-Function = Callable[[np.ndarray, np.ndarray], np.ndarray]
-Node = np.float64 | Function  # constants are folded: parameters cost nothing later
-
-
-class ExpressionError(ValueError):
-    """The text is not an expression we accept; the message says why."""
+CONSTANTS = {"pi": np.pi}
+RESERVED = (
+    "s", "t", "pi", "sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "abs", "min", "max", "where",
+)  # fmt: skip  # later functions are told from parameters by their bracket
 
 
 class Expression:
-    """A function of arc length s and time t, with the parameters bound to their values.
+    """A function of some variables, arc length s and time t by default, parameters bound to values.
 
-    Calling it as ``expression(s, t)`` returns a float64 array of the shape that ``s`` and ``t``
-    broadcast to; overflow and invalid operations give inf and nan without a warning. Raises
-    ExpressionError on construction.
+    Calling it with one array for each variable, ``expression(s, t)``, returns a float64 array of
+    the shape that these broadcast to; overflow and invalid operations give inf and nan without a
+    warning. Raises ExpressionError on construction.
+
+    Attributes
+    ----------
+    text : on one line. parameters : name -> value. variables : names, in the order of the call.
+    uses : those of the variables that the value depends on.
     """
 
-    def __init__(self, text: str, parameters: Mapping[str, float] | None = None):
-        self.text = " ".join(text.split())
+    def __init__(
+        self,
+        text: str,
+        parameters: Mapping[str, float] | None = None,
+        variables: Iterable[str] = ("s", "t"),
+    ):
+        self.text = _on_one_line(text)
         self.parameters = {name: float(value) for name, value in (parameters or {}).items()}
-        builder = _Builder(self.parameters)
-        with np.errstate(all="ignore"):
-            self._function = builder.build(_parse(self.text), 0)
-        self.uses_s = "s" in builder.used
-        self.uses_t = "t" in builder.used
+        self.variables = tuple(variables)
+        self._by: tuple[str, ...] = ()  # the variables it is differentiated by
+        nodes = parse(self.text)
+        _check_names(nodes, self.parameters, self.variables)
+        self._take(*bound(nodes, CONSTANTS | self.parameters))
 
-    def __call__(self, s: np.ndarray, t: np.ndarray | float) -> np.ndarray:
-        """Return the values at arc lengths ``s`` and times ``t``."""
-        s, t = np.asarray(s, dtype=np.float64), np.asarray(t, dtype=np.float64)
-        result = np.empty(np.broadcast_shapes(s.shape, t.shape))
-        with np.errstate(all="ignore"):
-            result[...] = _value(self._function, s, t)
+    def _take(self, graph, root) -> None:
+        self._graph, self._root = graph, root
+        self._program = Program(graph, root)
+        self.uses = frozenset(name for _, name in self._program.names)
+
+    def __call__(self, *values: np.ndarray | float) -> np.ndarray:
+        """Return the values at arrays of the variables, in the order of ``variables``."""
+        arrays = [np.asarray(value, dtype=np.float64) for value in values]
+        result = np.empty(np.broadcast_shapes(*(array.shape for array in arrays)))
+        result[...] = self._program(dict(zip(self.variables, arrays, strict=True)))
         return result
+
+    def derivative(self, variable: str) -> Expression:
+        """Return the exact derivative by one of the variables, a function of the same variables.
+
+        At the kinks of abs, min, max and where it is the slope of one side; sign, floor, heaviside
+        and comparisons have slope 0. It can be differentiated again.
+        """
+        if variable not in self.variables:
+            raise ValueError(f"'{variable}' is none of the variables {one_of(self.variables)}")
+        slope = Expression.__new__(Expression)
+        slope.text, slope.parameters, slope.variables = self.text, self.parameters, self.variables
+        slope._by = (*self._by, variable)
+        slope._take(*differentiate(self._graph, self._root, variable))
+        return slope
+
+    def add_to(self, graph: Graph) -> int:
+        """Add what it computes to a graph, return its node there."""
+        return graph.absorb(self._graph, self._root)
+
+    @property
+    def uses_s(self) -> bool:
+        """Whether it depends on the arc length."""
+        return "s" in self.uses
+
+    @property
+    def uses_t(self) -> bool:
+        """Whether it depends on time."""
+        return "t" in self.uses
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Expression) and self._identity() == other._identity()
@@ -95,13 +101,29 @@ class Expression:
         return hash(self._identity())
 
     def __repr__(self) -> str:
-        return f"Expression({self.text!r}, {self.parameters!r})"
+        by = "".join(f".derivative({name!r})" for name in self._by)
+        return f"Expression({self.text!r}, {self.parameters!r}, {self.variables!r}){by}"
 
-    def __reduce__(self):  # closures cannot be pickled; the text can
-        return Expression, (self.text, self.parameters)
+    def __reduce__(self):
+        return _again, (self.text, self.parameters, self.variables, self._by)
 
     def _identity(self) -> tuple:
-        return self.text, tuple(sorted(self.parameters.items()))
+        return self.text, tuple(sorted(self.parameters.items())), self.variables, self._by
+
+
+def _again(text, parameters, variables, by) -> Expression:
+    """Return the expression that was pickled."""
+    return reduce(Expression.derivative, by, Expression(text, parameters, variables))
+
+
+def evaluate(text: str, parameters: Mapping[str, float]) -> float:
+    """Return the number that an expression of the parameters alone stands for."""
+    return float(Expression(text, parameters, ())())
+
+
+def names_in(text: str) -> frozenset[str]:
+    """Return the parameters and variables a text names; raise ExpressionError for no formula."""
+    return frozenset(node.name for node in parse(_on_one_line(text)) if node.name) - {*CONSTANTS}
 
 
 def reserved_name(name: str) -> str | None:
@@ -113,132 +135,21 @@ def reserved_name(name: str) -> str | None:
     return None
 
 
-def _parse(text: str) -> ast.expr:
-    """Return the syntax tree of a text that is short and of harmless characters."""
-    if not text:
-        raise ExpressionError("the expression is empty")
-    if len(text) > LONGEST:
-        raise ExpressionError(f"{len(text)} characters long: at most {LONGEST}")
-    odd = _ODD_CHARACTER.search(text.replace("<=", "<").replace(">=", ">"))
-    if odd is not None:
-        default = f"the character {clipped(odd[0])} is not allowed"
-        raise ExpressionError(_ODD_CHARACTER_HINTS.get(odd[0], default))
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # Python's advice on odd code, such as "1if"
-            return ast.parse(text, mode="eval").body
-    except SyntaxError as error:
-        raise ExpressionError(f"not an expression: {error.msg}") from None
-    except (ValueError, MemoryError, RecursionError):  # nested too deep for the parser itself
-        raise ExpressionError("not an expression: nested too deep") from None
+def _on_one_line(text: str) -> str:
+    return " ".join(text.split())
 
 
-def _value(node: Node, s: np.ndarray, t: np.float64) -> np.ndarray | np.float64:
-    return node(s, t) if callable(node) else node
-
-
-def _apply(function: Callable, *nodes: Node) -> Node:
-    """Return the function of some nodes as a node, worked out at once if they are constants."""
-    if not any(callable(node) for node in nodes):
-        return np.float64(function(*nodes))
-    return lambda s, t: function(*(_value(node, s, t) for node in nodes))
-
-
-def _compared(comparison: Callable) -> Callable:
-    """Return a comparison as 1.0 or 0.0, so that arithmetic on it means the same everywhere."""
-    return lambda a, b: np.where(comparison(a, b), 1.0, 0.0)
-
-
-class _Builder:
-    """Turns a syntax tree into nodes, refusing all that is not on the whitelist."""
-
-    def __init__(self, parameters: Mapping[str, float]):
-        self.parameters = parameters
-        self.used: set[str] = set()
-
-    def build(self, tree: ast.expr, depth: int) -> Node:
-        """Return the node of a syntax tree; raise ExpressionError for what is not allowed."""
-        if depth > DEEPEST:
-            raise ExpressionError(f"nested deeper than {DEEPEST} levels")
-        kind = type(tree)
-        if kind is ast.Constant:
-            return self._number(tree.value)
-        if kind is ast.Name:
-            return self._name(tree.id)
-        if kind is ast.UnaryOp:
-            return _apply(self._operator(tree.op), self.build(tree.operand, depth + 1))
-        if kind is ast.BinOp:
-            sides = (self.build(side, depth + 1) for side in (tree.left, tree.right))
-            return _apply(self._operator(tree.op), *sides)
-        if kind is ast.Compare:
-            return self._comparison(tree, depth)
-        if kind is ast.Call:
-            return self._call(tree, depth)
-        if kind is ast.Attribute:
-            _refuse_library(tree)
-        raise ExpressionError(_REFUSED.get(kind, f"{kind.__name__} is not allowed"))
-
-    def _number(self, value: object) -> Node:
-        if type(value) not in (int, float):
-            raise ExpressionError(f"{clipped(repr(value))} is not a number")
-        try:
-            return np.float64(value)
-        except OverflowError:
-            raise ExpressionError("a number is too large") from None
-
-    def _name(self, name: str) -> Node:
-        if name in ("s", "t"):
-            self.used.add(name)
-            return (lambda s, t: s) if name == "s" else (lambda s, t: t)
-        if name == "pi":
-            return np.float64(np.pi)
-        if name in self.parameters:
-            return np.float64(self.parameters[name])
-        if name in NAMES:
-            raise ExpressionError(f"'{name}' is a function: write {name}(...)")
-        hint = did_you_mean(name, (*RESERVED, *self.parameters))
-        known = f": it can use {one_of(['s', 't', 'pi', *self.parameters])}"
-        raise ExpressionError(f"unknown name '{clipped(name)}'{hint or known}")
-
-    def _operator(self, operator: ast.AST) -> Callable:
-        kind = type(operator)
-        if kind not in _OPERATORS:
-            raise ExpressionError(
-                _REFUSED.get(kind, f"the operator {kind.__name__} is not allowed")
-            )
-        return _OPERATORS[kind]
-
-    def _comparison(self, tree: ast.Compare, depth: int) -> Node:
-        """Return a < b <= c as the product of its parts."""
-        sides = [self.build(side, depth + 1) for side in (tree.left, *tree.comparators)]
-        parts = [
-            _apply(_compared(self._operator(operator)), left, right)
-            for operator, left, right in zip(tree.ops, sides[:-1], sides[1:], strict=True)
-        ]
-        return reduce(lambda a, b: _apply(np.multiply, a, b), parts)
-
-    def _call(self, tree: ast.Call, depth: int) -> Node:
-        if isinstance(tree.func, ast.Attribute):
-            _refuse_library(tree.func)
-        if not isinstance(tree.func, ast.Name):
-            raise ExpressionError("a name must stand before '(': did you leave out a '*'?")
-        name = tree.func.id
-        if name not in NAMES:
-            hint = did_you_mean(name, NAMES) or f": the functions are {', '.join(NAMES)}"
-            raise ExpressionError(f"unknown function '{clipped(name)}'{hint}")
-        if tree.keywords or any(isinstance(argument, ast.Starred) for argument in tree.args):
-            raise ExpressionError(f"{name} takes plain arguments only")
-        if reason := wrong_count(name, len(tree.args)):
-            raise ExpressionError(reason)
-        arguments = [self.build(argument, depth + 1) for argument in tree.args]
+def _check_names(nodes, parameters, variables) -> None:
+    """Raise ExpressionError for the first name that means nothing here, or two things."""
+    names = [node.name for node in nodes if node.name]
+    for name in names:
+        if name in variables and name in parameters and name not in RESERVED:
+            reason = "is the variable of this expression and a parameter: rename the parameter"
+            raise ExpressionError(f"'{name}' {reason}")
+        if name in variables or name in parameters or name in CONSTANTS:
+            continue
         if name in FUNCTIONS:
-            return _apply(FUNCTIONS[name][0], *arguments)
-        return reduce(lambda a, b: _apply(OF_MANY[name], a, b), arguments)
-
-
-def _refuse_library(tree: ast.Attribute) -> None:
-    """Raise for ``np.sin``, which is ``sin`` here; do nothing for another attribute."""
-    if isinstance(tree.value, ast.Name) and (
-        hint := library_hint(tree.value.id, tree.attr, RESERVED)
-    ):
-        raise ExpressionError(hint)
+            raise ExpressionError(f"'{name}' is a function: write {name}(...)")
+        known = [*variables, *CONSTANTS, *parameters]
+        hint = did_you_mean(name, (*known, *FUNCTIONS)) or f": it can use {one_of(known)}"
+        raise ExpressionError(f"unknown name '{clipped(name)}'{hint}")

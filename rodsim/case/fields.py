@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any
 
 from pydantic import (
@@ -12,7 +13,6 @@ from pydantic import (
     Field,
     PlainValidator,
     Tag,
-    ValidationInfo,
     WithJsonSchema,
 )
 
@@ -28,6 +28,8 @@ DIMENSIONS = {  # exponents of (mass, length, time)
     "density": (1, -3, 0),
     "bending": (1, 3, -2),
     "force": (1, 1, -2),
+    "stiffness": (1, 0, -2),
+    "velocity": (0, 1, -1),
     "curvature": (0, -1, 0),
 }
 ANGLES = {"angle": "rad", "degrees": "degree"}
@@ -55,7 +57,7 @@ def no_larger_than_memory(points: int) -> int:
     return points
 
 
-def not_empty(entries: tuple) -> tuple:
+def not_empty(entries: Any) -> Any:
     """Return the entries; raise ValueError if there are none."""
     if not entries:
         raise ValueError("must not be empty")
@@ -91,10 +93,27 @@ def not_null(vector: tuple[float, float, float]) -> tuple[float, float, float]:
     return vector
 
 
-def bound_expression(text: Any, info: ValidationInfo) -> Expression:
-    """Return the expression with the case's parameters, which come as the validation context."""
-    parameters = (info.context or {}).get("parameters", {})
-    return Expression(text, parameters)
+class ScopedText(str):
+    """The text of an expression with the numbers of the parameters where it stands."""
+
+    parameters: Mapping[str, float]
+
+    def __new__(cls, text: str, parameters: Mapping[str, float]):
+        """Return the text with its parameters."""
+        made = super().__new__(cls, text)
+        made.parameters = parameters
+        return made
+
+
+def expression_in(*variables: str) -> Any:
+    """Return the type of a key whose text is an expression in variables and the parameters."""
+
+    def bound(text: str) -> Expression:
+        return Expression(text, getattr(text, "parameters", {}), variables)
+
+    words = f"expression in {', '.join(variables)} and the parameters"
+    schema = WithJsonSchema({"type": "string", "description": words})
+    return Annotated[Any, PlainValidator(bound), schema]
 
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
@@ -133,15 +152,16 @@ def number_tag(value: Any) -> str:
     return "<number>" if tag == "<text>" else tag
 
 
-ExpressionText = Annotated[
-    Any,
-    PlainValidator(bound_expression),
-    WithJsonSchema({"type": "string", "description": "expression in s, t and the parameters"}),
-]
-NumberOrExpression = Annotated[
-    Annotated[Number, Tag("<number>")] | Annotated[ExpressionText, Tag("<text>")],
-    Discriminator(tag_of),
-]
+def number_or(expression: Any) -> Any:
+    """Return the type of a key that is a number or an expression of some variables."""
+    return Annotated[
+        Annotated[Number, Tag("<number>")] | Annotated[expression, Tag("<text>")],
+        Discriminator(tag_of),
+    ]
+
+
+ExpressionText = expression_in("s", "t")
+NumberOrExpression = number_or(ExpressionText)
 NumberOrPair = Annotated[
     Annotated[Positive, Tag("<number>")] | Annotated[tuple[Positive, Positive], Tag("<list>")],
     Discriminator(number_tag),

@@ -1,53 +1,75 @@
-"""The functions of expressions, and what to write for those of other languages."""
+"""What expressions are made of: every operation, how it is computed, how many arguments."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 from rodsim.case.words import did_you_mean
 
-LIBRARIES = ("np", "numpy", "math", "jnp")  # what people write before a function
+
+@dataclass(frozen=True)
+class Function:
+    """A function as users write it: its operation, and how many arguments it takes at least."""
+
+    operation: str
+    fewest: int = 1
+    most: int | None = 1  # None: any number, taken two at a time from the left
+
+
+def _compared(comparison: Callable) -> Callable:
+    """Return a comparison as 1.0 or 0.0, so that arithmetic on it means the same everywhere."""
+    return lambda a, b: np.where(comparison(a, b), 1.0, 0.0)
 
 
 def _chosen(condition, if_true, if_false):
     return np.where(condition != 0.0, if_true, if_false)
 
 
-def _half_at_zero(x):
-    return np.heaviside(x, 0.5)  # the mean of both sides
-
-
-_NUMPY = (
-    *("sin", "cos", "tan", "arcsin", "arccos", "arctan", "sinh", "cosh", "tanh"),
-    *("exp", "log", "sqrt", "abs", "sign", "floor"),
-)
-FUNCTIONS: dict[str, tuple[Callable, int]] = {  # with the number of arguments
-    **{name: (getattr(np, name), 1) for name in _NUMPY},
-    "heaviside": (_half_at_zero, 1),
-    "arctan2": (np.arctan2, 2),
-    "where": (_chosen, 3),
+_ONE_ARGUMENT = (
+    "sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "abs",
+    "arcsin", "arccos", "arctan", "sinh", "cosh", "sign", "floor",
+)  # fmt: skip
+COMPARISONS = {"<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal}
+OPERATIONS: dict[str, Callable] = {  # each takes and returns float64, arrays of any shape
+    "+": np.add,
+    "-": np.subtract,
+    "*": np.multiply,
+    "/": np.divide,
+    "**": np.power,
+    "%": np.mod,
+    "pos": np.positive,
+    "neg": np.negative,
+    "floor_divide": np.floor_divide,
+    "min": np.minimum,
+    "max": np.maximum,
+    "arctan2": np.arctan2,
+    "heaviside": np.heaviside,
+    "where": _chosen,
+    **{name: getattr(np, name) for name in _ONE_ARGUMENT},
+    **{sign: _compared(comparison) for sign, comparison in COMPARISONS.items()},
+    "==": _compared(np.equal),
 }
-OF_MANY = {"min": np.minimum, "max": np.maximum}  # of two arguments or more
-NAMES = (*FUNCTIONS, *OF_MANY)
+FUNCTIONS: dict[str, Function] = {
+    **{name: Function(name) for name in _ONE_ARGUMENT},
+    "arctan2": Function("arctan2", 2, 2),
+    "heaviside": Function("heaviside", 1, 2),  # the value at 0 is 1/2, or the second argument
+    "min": Function("min", 2, None),
+    "max": Function("max", 2, None),
+    "where": Function("where", 3, 3),
+}
+_LIBRARY = re.compile(r"\b(np|numpy|math|jnp)\.([A-Za-z_]\w*)")  # as people write it elsewhere
 
 
-def wrong_count(name: str, count: int) -> str:
-    """Return why a function cannot take so many arguments, empty if it can."""
-    if name in OF_MANY:
-        return "" if count > 1 else f"{name} takes two or more arguments, not {count}"
-    wanted = FUNCTIONS[name][1]
-    if count == wanted:
+def library_hint(text: str) -> str:
+    """Return what to write for the first ``np.sin`` in a text; empty where there is none."""
+    if not (found := _LIBRARY.search(text)):
         return ""
-    return f"{name} takes {wanted} argument{'s' * (wanted > 1)}, not {count}"
-
-
-def library_hint(library: str, name: str, known: tuple[str, ...]) -> str:
-    """Return what to write for ``np.sin``; empty for a dot that has nothing to do with NumPy."""
-    if library not in LIBRARIES:
-        return ""
-    if name in known:
-        shown = f"{name}(...)" if name in NAMES else name
-        return f"write {shown}, without '{library}.'"
-    return f"there is no '{library}' here{did_you_mean(name, known)}"
+    library, name = found.groups()
+    if name in FUNCTIONS or name == "pi":
+        call = "(...)" if name in FUNCTIONS else ""
+        return f"write {name}{call}, without '{library}.'"
+    return f"there is no '{library}' here{did_you_mean(name, (*FUNCTIONS, 'pi'))}"

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import copy
-import math
 import os
 import shlex
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
 from rodsim.case.check import Finding, check
+from rodsim.case.copies import expand
 from rodsim.case.messages import explain, yaml_path
 from rodsim.case.model import Case
+from rodsim.case.numbers import Numbers
 from rodsim.case.overrides import apply_overrides
 from rodsim.case.places import Place, named
 from rodsim.case.slips import below, section_slips
 from rodsim.case.source import Source
+from rodsim.case.words import did_you_mean
 from rodsim.case.yaml_text import Path, compose
 from rodsim.errors import CaseError, Problem, UsageError
 from rodsim.files import HDF5_SIGNATURE
@@ -79,14 +81,20 @@ def _build(source: Source, problems: list[Problem]) -> Case:
         found = "is empty" if source.data is None else "has no keys"
         reason = f"the file {found}: a case needs fluid, rods and time (see 'rodsim new')"
         raise CaseError([Problem(source.where(()), "", None, reason)])
-    problems = problems + apply_overrides(source)
-    case, wrong = _validate(source)
-    errors, warnings = check(case, _rod_names(source))
-    problems += wrong
-    problems += _placed(errors, source)
+    wrong, late = apply_overrides(source, source.overrides)
+    problems = problems + wrong
+    names = _rod_names(source)
+    numbers = Numbers(source)
+    if unmade := expand(source, numbers.scope):
+        numbers.failed.add(("rods",))  # there may be none now
+    problems += unmade + apply_overrides(source, late)[0]
+    case, wrong = _validate(source, numbers)
+    errors, warnings = check(case, [*_rod_names(source), *names])
+    problems += numbers.problems + wrong + _placed(errors, source)
     if problems:
-        raise CaseError(_in_order(problems))
-    case._source, case._warnings = source, tuple(_placed(warnings, source))
+        raise CaseError(_in_order(_once(problems, source)))
+    warnings += _unused(source, numbers)
+    case._source, case._warnings = source, tuple(_once(_placed(warnings, source), source))
     return case
 
 
@@ -94,22 +102,49 @@ def _placed(findings: list[Finding], source: Source) -> list[Problem]:
     return [source.problem(path, reason) for path, reason in findings]
 
 
-def _validate(source: Source) -> tuple[Case, list[Problem]]:
+def _once(problems: list[Problem], source: Source) -> list[Problem]:
+    """Return problems without those that a rod has only because it is like another."""
+
+    def told(problem: Problem) -> tuple:
+        rod, _, below = problem.key.removeprefix("rods.").partition(".")
+        return rod in source.origins, (problem.where, below, problem.reason)
+
+    seen = {what for copied, what in map(told, problems) if not copied}
+    found = []
+    for problem in problems:
+        copied, what = told(problem)
+        if not (copied and what in seen):
+            found.append(problem)
+        seen.add(what)
+    return found
+
+
+def _unused(source: Source, numbers: Numbers) -> Iterator[Finding]:
+    """A parameter that only ``--set`` has, and that nothing uses, may be a slip of the keys."""
+    for name in source.added:
+        if name not in numbers.used and source.value(("parameters", name)) is not None:
+            others = [other for other in numbers.scope.values if other not in source.added]
+            hint = did_you_mean(name, others)
+            yield ("parameters", name), f"nothing uses this new parameter{hint}"
+
+
+def _validate(source: Source, numbers: Numbers) -> tuple[Case, list[Problem]]:
     """Return the case and no problems, or what validated of it and all problems."""
-    data = without_nulls(source.data, source.root)
-    context = {"parameters": _parameters(data)}
+    data = without_nulls(numbers.data(), source.root)
     try:
-        return Case.model_validate(data, context=context), []
+        return Case.model_validate(data), []
     except ValidationError as error:
         details = error.errors(include_url=False, include_input=False)
     slips = section_slips(source)
     bad = [yaml_path(detail["loc"], source.data) for detail in details]
-    told = [d for d, path in zip(details, bad, strict=True) if not below(path, slips)]
-    problems = [*slips.values(), *(explain(detail, source) for detail in told[:MOST_PROBLEMS])]
-    return _valid_part(data, bad, context), list(dict.fromkeys(problems))
+    told = {*slips, *numbers.failed}
+    new = [d for d, path in zip(details, bad, strict=True) if path not in told]
+    new = [d for d in new if not below(yaml_path(d["loc"], source.data), slips)]
+    problems = [*slips.values(), *(explain(detail, source) for detail in new[:MOST_PROBLEMS])]
+    return _valid_part(data, bad), list(dict.fromkeys(problems))
 
 
-def _valid_part(data: dict, bad: list[Path], context: dict) -> Case:
+def _valid_part(data: dict, bad: list[Path]) -> Case:
     """Return a Case of the sections, rods and tracer groups that validated; others are None."""
     parts = {}
     for name, field in Case.model_fields.items():
@@ -121,7 +156,7 @@ def _valid_part(data: dict, bad: list[Path], context: dict) -> Case:
             if inside:
                 section = {key: item for key, item in section.items() if key not in inside}
             adapter = TypeAdapter(field.annotation)
-            parts[name] = adapter.validate_python(section, context=context)
+            parts[name] = adapter.validate_python(section)
     if any(path[0] == "parameters" for path in bad):
         parts["parameters"] = None
     return Case.model_construct(**parts)
@@ -141,16 +176,6 @@ def without_nulls(node: Any, place: Place | None) -> Any:
         for key, item in node.items()
         if keep or item is not None
     }
-
-
-def _parameters(data: dict) -> dict[str, float]:
-    """Return the values expressions are bound to; nan for what is no number, refused anyway."""
-    given = data.get("parameters")
-    values = {}
-    for name, value in (given if isinstance(given, dict) else {}).items():
-        is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        values[name] = float(value) if is_number else math.nan
-    return values
 
 
 def _rod_names(source: Source) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import replace
 from typing import Any
@@ -16,7 +17,6 @@ from rodsim.errors import Problem
 _NAME_RULE = "a name is made of letters, digits and _, and does not begin with a digit"
 _UNIT_RULE = "must be a short name of letters"
 _GLUED = re.compile(r"[A-Za-z_]\w*:[^\s:/].*")
-_DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
 _BOUNDS = {
     "greater_than": "> {gt:g}",
     "greater_than_equal": ">= {ge:g}",
@@ -88,8 +88,8 @@ def _hint(noun: str, value: Any, option: bool) -> str:
     """Return what to write instead, where it is plain."""
     if isinstance(value, float) and noun == "a whole number" and value.is_integer():
         return f": write {int(value)}"
-    if isinstance(value, str) and "number" in noun:
-        return _number_hint(value)
+    if isinstance(value, str) and "number" in noun and _is_number(value):
+        return ", without quotes"
     if isinstance(value, str) and "mapping" in noun and _GLUED.fullmatch(value):
         key, _, rest = value.partition(":")
         return f": a blank must follow the colon: write '{key}: {clipped(rest)}'"
@@ -100,15 +100,11 @@ def _hint(noun: str, value: Any, option: bool) -> str:
     return ""
 
 
-def _number_hint(text: str) -> str:
-    """Return how to write a text that is nearly a number."""
-    if _DECIMAL_COMMA.fullmatch(text):
-        return f": decimals have a point: write {text.replace(',', '.')}"
+def _is_number(text: str) -> bool:
     try:
-        float(text)
+        return math.isfinite(float(text))
     except ValueError:
-        return ""
-    return ", without quotes"
+        return False
 
 
 def _wrong_kind(path: Path, source: Source) -> Problem:

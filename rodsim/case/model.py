@@ -25,9 +25,11 @@ from rodsim.case.fields import (
     number_tag,
     quantity,
 )
+from rodsim.case.methods import METHODS, Method
 from rodsim.case.shapes import Shape
 from rodsim.case.source import Source
 from rodsim.errors import Problem
+from rodsim.registry import with_words
 
 DEFAULT_FRAMES = 100
 FieldName = Literal["position", "director", "velocity", "angular_velocity", "force", "torque"]
@@ -61,6 +63,9 @@ class Fluid(Model):
     )
 
 
+Fluid = with_words(Fluid)
+
+
 class Moduli(Model):
     """Elastic moduli; bending and shear may differ along D1 and D2."""
 
@@ -82,6 +87,17 @@ def _pair(value: float | tuple[float, float]) -> tuple[float, float]:
 class Rod(Model):
     """One elastic rod."""
 
+    like: Name | None = Field(
+        None,
+        description="another rod that says what is left out here: mappings are merged, lists and "
+        "values replaced, null takes a key out",
+    )
+    repeat: Count | None = Field(
+        None, description="make NAME_0, NAME_1, ...: so many, with the number as i in expressions"
+    )
+    parameters: dict[ParameterName, Number] = Field(
+        {}, description="names for its expressions; they replace those of the case or add to them"
+    )
     shape: Shape = Field(description="how it starts")
     moduli: Moduli = Field(description="elastic moduli")
     strain_twist: tuple[NumberOrExpression, NumberOrExpression, NumberOrExpression] = quantity(
@@ -94,6 +110,9 @@ class Rod(Model):
     def driven(self) -> bool:
         """Whether its strain twist depends on time."""
         return any(isinstance(entry, Expression) and entry.uses_t for entry in self.strain_twist)
+
+
+Rod = with_words(Rod)
 
 
 class Tube(Model):
@@ -110,7 +129,7 @@ class Time(Model):
     """How long, and by which method."""
 
     end: Positive = quantity("time", "simulated time of the last frame; the first is at 0")
-    integrator: Literal["rkc", "rk4", "euler"] = Field("rkc", description="rkc is adaptive")
+    integrator: Literal[tuple(METHODS)] = Field("rkc", description="rkc is adaptive")
     tolerance: float = Field(
         1e-4,
         strict=True,
@@ -126,6 +145,11 @@ class Time(Model):
         default=None,
     )
     step: Positive | None = quantity("time", "euler, rk4: the step", default=None)
+
+    @property
+    def method(self) -> Method:
+        """What is known of the method."""
+        return METHODS[self.integrator]
 
 
 def _distinct_with_position(names: tuple[str, ...]) -> tuple[str, ...]:
@@ -193,7 +217,7 @@ class Case(Model):
         if self.output.interval is not None:
             return self.output.interval
         share = self.time.end / DEFAULT_FRAMES
-        if self.time.integrator == "rkc" or self.time.step is None:
+        if self.time.method.adaptive or self.time.step is None:
             return share
         return max(1.0, float(np.ceil(share / self.time.step * (1.0 - 1e-9)))) * self.time.step
 
@@ -211,7 +235,7 @@ class Case(Model):
         """Longest step of rkc: over a drive that changes in time, it passes in small parts."""
         if self.time.max_step is not None:
             return self.time.max_step
-        return self.interval if any(rod.driven for rod in self.rods.values()) else math.inf
+        return self.interval if _driven(self) else math.inf
 
     def problem(self, key_path: str | tuple, reason: str) -> Problem:
         """Return a Problem at a key, with its file:line, value and unit, for later checks."""
@@ -225,9 +249,26 @@ class Case(Model):
         """
         data = _plain(self)
         data["output"]["interval"] = self.interval
-        if self.time.integrator != "rkc":
+        for rod in data["rods"].values():
+            if not rod["parameters"]:  # as in files from before rods had any
+                del rod["parameters"]
+        if not self.time.method.adaptive:
             del data["time"]["tolerance"]
         return data
+
+
+Case = with_words(Case)
+
+
+def _driven(value: Any) -> bool:
+    """Tell whether anything in a model depends on time."""
+    if isinstance(value, Expression):
+        return value.uses_t
+    if isinstance(value, BaseModel):
+        value = {name: getattr(value, name) for name in type(value).model_fields}
+    if isinstance(value, dict):
+        value = tuple(value.values())
+    return isinstance(value, tuple) and any(map(_driven, value))
 
 
 def _plain(value: Any) -> Any:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import islice
 from typing import Any
 
+from rodsim.case.copies import inherited, is_late
 from rodsim.case.places import Place, named
 from rodsim.case.source import OVERRIDE, Source, child
 from rodsim.case.words import clipped, did_you_mean, dotted, one_of
@@ -27,14 +28,15 @@ class _UnknownKey(Exception):
         self.hint = hint
 
 
-def apply_overrides(source: Source) -> list[Problem]:
-    """Apply ``source.overrides`` in order to ``source.data``; return what is wrong with them.
+def apply_overrides(source: Source, texts: Iterable[str]) -> tuple[list[Problem], list[str]]:
+    """Apply overrides in order to ``source.data``; return what is wrong with them.
 
     Keys that are there are replaced, or removed by ``null``. Keys that are not are added if the
-    model has them; new rods, tracer groups and parameters are refused.
+    model has them, and so are parameters; new rods and tracer groups are refused. What changes one
+    copy of a repeated rod is returned as well: it can be applied when the copies are there.
     """
-    problems = []
-    for text in source.overrides:
+    problems, late = [], []
+    for text in texts:
         key, equals, value = text.partition("=")
         key = key.strip()
         try:
@@ -44,7 +46,10 @@ def apply_overrides(source: Source) -> list[Problem]:
                 raise _Refused("has no value after '=': write null to remove the key")
             parts = tuple(key.split("."))
             data, _ = parse(value, lambda line: OVERRIDE, parts)
-            _put(source, parts, data)
+            if is_late(parts, source.data):
+                late.append(text)
+            else:
+                _put(source, parts, data)
         except _UnknownKey as unknown:
             found = _places(source.data, source.root, parts)
             places = [f"'{dotted(path)}'" for path in islice(found, MOST_PLACES)]
@@ -55,7 +60,7 @@ def apply_overrides(source: Source) -> list[Problem]:
             problems.append(Problem(OVERRIDE, shown_key, None, str(refused)))
         except CaseError as error:
             problems += error.problems
-    return problems
+    return problems, late
 
 
 def _put(source: Source, parts: tuple[str, ...], value: Any) -> None:
@@ -65,12 +70,15 @@ def _put(source: Source, parts: tuple[str, ...], value: Any) -> None:
         key, below = _step(node, place, part, path)
         path = (*path, key)
         if isinstance(node, dict) and node.get(key) is None:
-            is_list = isinstance(below.default, tuple)
-            node[key] = list(below.default) if is_list else {}
+            above = inherited(source.data, path)
+            entries = above if isinstance(above, list) else below.default
+            node[key] = list(entries) if isinstance(entries, list | tuple) else {}
             source.lines[path] = None
         node, place = node[key], below
     key, _ = _step(node, place, parts[-1], path)
     path = (*path, key)
+    if path[:-1] == ("parameters",) and key not in node:
+        source.added.append(key)
     for known in [known for known in source.lines if known[: len(path)] == path]:
         del source.lines[known]
     if value is None and isinstance(node, dict):
@@ -89,7 +97,7 @@ def _step(node: Any, place: Place, part: str, path: tuple) -> tuple[str | int, P
         key = int(part)
     elif isinstance(node, dict):
         key = part
-        if named(place) and key not in node:
+        if named(place) and key not in node and not _is_parameters(place):
             raise _Refused(f"{here} has no '{clipped(key)}'{_near(key, list(node))}")
     else:
         raise _Refused(f"{here} is a single value here: set it as a whole")
@@ -107,6 +115,12 @@ def _places(node: Any, place: Place, end: tuple[str, ...], path: tuple = ()) -> 
     for key in list(node if isinstance(node, dict) else ()) if named(place) else place.keys(node):
         if below := place.child(key, node):
             yield from _places(child(node, key), below, end, (*path, key))
+
+
+def _is_parameters(place: Place) -> bool:
+    """Whether the user's names here are those of numbers, which may be added."""
+    below = place.child("")
+    return below is not None and below.takes_numbers()
 
 
 def _near(word: str, choices: list[str]) -> str:

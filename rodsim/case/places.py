@@ -52,6 +52,20 @@ class Place:
         others = [m for m in _members(self.annotation) if not (_is_model(m) and _kinds([m]))]
         return one_of(start + [_noun(member) for member in others])
 
+    def takes_expressions(self) -> bool:
+        """Whether a text here stays an expression, of variables such as s and t."""
+        return Any in _members(self.annotation)
+
+    def takes_numbers(self) -> bool:
+        """Whether a number may stand here, and no text of another meaning."""
+        members = _members(self.annotation)
+        return (float in members or int in members) and str not in members
+
+    def takes_whole_numbers(self) -> bool:
+        """Whether it is whole numbers that may stand here."""
+        members = _members(self.annotation)
+        return int in members and float not in members
+
     def child(self, key: str | int, value: Any = None) -> Place | None:
         """Return the place one key further, or None where the model has no such key."""
         for model in self.models(value):

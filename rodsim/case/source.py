@@ -27,6 +27,9 @@ class Source:
     data: Any = None
     lines: Lines = field(default_factory=dict)
     root: Place | None = None  # what the model knows; None knows nothing
+    numbers: dict[Path, float] = field(default_factory=dict)  # what expressions came to
+    added: list[str] = field(default_factory=list)  # parameters that only an override has
+    origins: dict[str, str] = field(default_factory=dict)  # what a rod is like, or a copy of
 
     def where(self, path: Path) -> str:
         """Return ``file:line`` of a key, or of the mapping it would be in, or ``--set``."""
@@ -72,6 +75,8 @@ class Source:
         parts = key_path.split(".") if isinstance(key_path, str) else key_path
         path = tuple(int(p) if isinstance(p, str) and p.isdecimal() else p for p in parts)
         value, unit = shown(self.value(path)), self.unit(path)
+        if path in self.numbers:
+            value = f"{value} (= {self.numbers[path]:.6g})"
         return Problem(self.where(path), dotted(path), value, reason, unit)
 
     def command(self, *changes: str, output: str = DEFAULT_OUTPUT) -> str:

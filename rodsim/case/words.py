@@ -35,6 +35,7 @@ SYNONYMS = {
 }
 LONGEST_WORD = 60  # comparing words is quadratic; nobody mistypes longer names than this
 LONGEST_VALUE = 60
+LONGEST_CIRCLE = 12  # names shown
 
 
 def did_you_mean(word: str, choices: Iterable[str]) -> str:
@@ -52,6 +53,17 @@ def one_of(choices: Iterable[str]) -> str:
     """Return ``a, b or c``."""
     *most, last = choices
     return f"{', '.join(most)} or {last}" if most else last
+
+
+def circle(names: list[str], order: list[str]) -> tuple[str, str]:
+    """Return the first in ``order`` of names that each need the next, and the words for them."""
+    place = {name: index for index, name in enumerate(order)}
+    first = min(names, key=place.get)
+    turn = names.index(first)
+    words = [clipped(name) for name in (*names[turn:], *names[:turn], first)]
+    if len(words) > LONGEST_CIRCLE:
+        words[LONGEST_CIRCLE - 1 : -1] = ["..."]
+    return first, f"goes in a circle: {' -> '.join(words)}"
 
 
 def clipped(text: str, most: int = LONGEST_VALUE) -> str:

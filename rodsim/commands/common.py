@@ -1,6 +1,5 @@
 """What several commands share: arguments, options, loading a case."""
 
-from contextlib import contextmanager
 from pathlib import Path
 
 import click
@@ -39,18 +38,6 @@ max_wall_option = click.option(
     metavar="TIME",
     help="Stop in time before so much wall time has gone, e.g. 3h50m; rodsim resume goes on.",
 )
-
-
-@contextmanager
-def announce(summary, output, quiet):
-    """Say how a run has ended and what it has cost, however it ends."""
-    from rodsim.commands import reports
-
-    try:
-        yield
-    finally:
-        if not quiet and summary.runtime:
-            say(reports.run_summary(summary, output))
 
 
 def load(path, overrides):

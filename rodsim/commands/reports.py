@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rodsim.case.methods import METHODS
 from rodsim.errors import FileError
 from rodsim.run.recorder import frame_times
 from rodsim.scene.build import build_scene
@@ -37,8 +38,8 @@ def describe_case(case, refuse=False) -> str:
     for name, count in scene.tracer_groups.items():
         lines.append(f"tracers {name}: {count} markers")
     time = case.time
-    adaptive = time.integrator == "rkc"
-    how = f"tolerance {time.tolerance:g}" if adaptive else f"step {time.step:g}"
+    option = METHODS[time.integrator].option
+    how = f"{option} {getattr(time, option):g}"
     frames = len(frame_times(time.end, case.interval))
     lines.append(f"time: to {time.end:g} {unit.time} by {time.integrator}, {how}; {frames} frames")
     limits = stability(RodSystem(scene))

@@ -2,7 +2,7 @@
 
 import shlex
 import signal
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import click
@@ -97,10 +97,14 @@ def _compile(left, quiet):
     """Compile once what the runs need, instead of in every one of them at the same time."""
     prepare_numba()
     from rodsim.case import load_case
+    from rodsim.errors import RodsimError
     from rodsim.run.warmup import ensure_compiled
+    from rodsim.scene.build import build_scene
 
     for run in left:
-        ensure_compiled(load_case(run.case), lambda line: quiet or say(line))
+        with suppress(RodsimError):  # which that run will report
+            scene = build_scene(load_case(run.case))
+            ensure_compiled(scene, lambda line: quiet or say(line))
 
 
 @contextmanager

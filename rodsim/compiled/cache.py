@@ -26,8 +26,7 @@ def cached_njit(*signature, **options):
         return cached_njit(**options)(signature[0])
 
     def decorate(function):
-        keep = _keeps(os.path.dirname(function.__code__.co_filename), function)
-        return njit(*signature, cache=keep, **options)(function)
+        return njit(*signature, cache=keeps(function), **options)(function)
 
     return decorate
 
@@ -35,8 +34,9 @@ def cached_njit(*signature, **options):
 _seen: dict[str, bool] = {}
 
 
-def _keeps(room: str, function) -> bool:
-    """Tell whether compiled code of a room can be kept, once it has been mended."""
+def keeps(function) -> bool:
+    """Tell whether compiled code of a function's folder can be kept, once that is mended."""
+    room = os.path.dirname(function.__code__.co_filename)
     if room not in _seen:
         _seen[room] = numba.config.DISABLE_JIT or _mended(function)
     return _seen[room]

@@ -3,9 +3,9 @@
 ``reassoc`` is what lets LLVM vectorise a sum; ``nnan`` and ``ninf`` are left out on purpose, so a
 NaN or an infinity in a state always shows. ``error_model="numpy"``: a checked division would stop
 vectorisation. Kernels have signatures, so each is compiled (or read from the cache) once, when its
-module is imported, and never again for another array layout. Parts have none: they are compiled
-with the kernels that call them, and cost a run nothing to load. Nor have the sums, so that only
-those are compiled that a scene calls.
+module is imported, and never again for another array layout. What is ``unsigned`` is compiled with
+the kernels that call it, and costs a run nothing to load. So are the sums: only those are compiled
+that a scene calls. A part (:mod:`rodsim.compiled.kernels`) is compiled when a scene first lists it.
 
 Loops over points use unsigned indices (``ONE`` and ``np.uint64``): for signed ones Numba adds the
 wrap-around of negative indices to each access, and LLVM then gives up vectorising.
@@ -14,9 +14,13 @@ wrap-around of negative indices to each access, and LLVM then gives up vectorisi
 from functools import partial
 
 import numpy as np
+from llvmlite import ir
+from numba import cfunc, types
+from numba.extending import intrinsic
 
 from rodsim.compiled import threads
-from rodsim.compiled.cache import cached_njit
+from rodsim.compiled.cache import cached_njit, keeps
+from rodsim.compiled.kernels import interpreted, jit_is_off
 
 threads.start()
 
@@ -24,16 +28,38 @@ VEC = "float64[::1]"
 MAT = "float64[:, ::1]"
 TRIADS = "float64[:, :, ::1]"
 INTS = "int64[::1]"
+INT_MAT = "int64[:, ::1]"
 BOOLS = "boolean[::1]"
-RODS = f"Tuple(({INTS}, {INTS}, {BOOLS}, {VEC}, {MAT}))"  # rods.state.Rods.tables
-BASE = f"Tuple(({MAT}, {TRIADS}, {MAT}))"  # position, director, tracer of a state
-WORK = f"Tuple(({MAT}, {TRIADS}, {MAT}, {MAT}, {MAT}))"  # the same, internal, loads
-SYSTEM = f"{RODS}, UniTuple(float64, 2), {BASE}, {WORK}"  # what an evaluation takes
+RODS = f"Tuple(({INTS}, {INTS}, {BOOLS}, {VEC}, {MAT}))"  # nodes.Rods.tables
+STATE = f"Tuple(({MAT}, {TRIADS}, {MAT}))"  # position, director, tracer
+PART = f"void({VEC}, {VEC}, {RODS}, {STATE}, {MAT}, UniTuple({MAT}, 2))"  # compiled.kernels
 ONE = np.uint64(1)
 
 SUM_FLAGS = {"reassoc", "contract", "arcp", "nsz"}
 
 kernel = partial(cached_njit, error_model="numpy")
 parallel_kernel = partial(cached_njit, error_model="numpy", parallel=True, fastmath=SUM_FLAGS)
-part = kernel  # without a signature
+unsigned = kernel  # without a signature: compiled with whatever calls it
 inline = partial(cached_njit, error_model="numpy", inline="always")
+
+
+def compile_part(function):
+    """Compile a part, or read it from the cache."""
+    return cfunc(PART, cache=keeps(function), error_model="numpy")(function)
+
+
+@intrinsic
+def _call_at(typing, address, row, fixed, rods, state, loads, velocities):
+    """Call the part whose machine code lies at an address."""
+
+    def code(context, builder, signature, arguments):
+        kinds = [context.get_value_type(kind) for kind in signature.args[1:]]
+        function = ir.FunctionType(context.get_value_type(types.none), kinds)
+        place = builder.inttoptr(arguments[0], function.as_pointer())
+        builder.call(place, arguments[1:])
+        return context.get_dummy_value()
+
+    return types.void(types.int64, row, fixed, rods, state, loads, velocities), code
+
+
+call_part = interpreted if jit_is_off() else _call_at

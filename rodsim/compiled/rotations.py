@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from rodsim.compiled.flags import BASE, VEC, inline, kernel, part
+from rodsim.compiled.flags import STATE, VEC, inline, kernel, unsigned
 
 SERIES_UP_TO = 1.0  # squared angle: there the next terms of the series are below 1e-19
 
@@ -48,7 +48,7 @@ def _add(position, shift, out):
             out[c, k] = position[c, k] + shift[c, k]
 
 
-@part
+@unsigned
 def rotate(theta, D, out):
     """out = exp(theta x) D: Rodrigues' formula (36), the identity where theta = 0.
 
@@ -72,7 +72,7 @@ def rotate(theta, D, out):
         _turn(a, b, tx, ty, tz, D, k, out)
 
 
-@kernel(f"void({BASE}, {VEC}, {BASE})")
+@kernel(f"void({STATE}, {VEC}, {STATE})")
 def displace(base, y, out):
     """Write the state with increments ``y`` from ``base``: (position, director, tracer) each.
 
@@ -100,7 +100,7 @@ def angular_velocity(theta: np.ndarray, rate: np.ndarray) -> np.ndarray:
     return rate + first * turned + second * np.cross(theta, turned, axis=0)
 
 
-@part
+@unsigned
 def rotation_vector_rate(theta, w):
     """Replace the angular velocity w by d theta/dt = w - 1/2 theta x w + 1/12 theta x (theta x w).
 

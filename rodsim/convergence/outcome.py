@@ -9,9 +9,10 @@ import numpy as np
 
 from rodsim.analysis.difference import position_errors, triad_angle
 from rodsim.errors import StepFailure
-from rodsim.forces.elasticity import ENERGIES
+from rodsim.forces.elastic import ENERGIES
 from rodsim.run.machine import Machine
-from rodsim.scene.build import Scene, State, build_scene
+from rodsim.scene.build import build_scene
+from rodsim.scene.state import Scene, State
 
 
 @dataclass(frozen=True)
@@ -109,7 +110,7 @@ def compare(run: Outcome, reference: Outcome) -> Errors:
     largest, rms = position_errors(ours.position, theirs.position)
     scale = max(abs(energy) for energy in reference.energies)
     speed = None
-    if reference.scene.strain_twist.driven:
+    if reference.scene.parts.driven:
         gap = np.linalg.norm(run.velocity - reference.velocity)
         speed = float(gap / np.linalg.norm(reference.velocity))
     return Errors(

@@ -6,11 +6,12 @@ import csv
 
 import numpy as np
 
+from rodsim.case.methods import ADAPTIVE, FIXED_STEP
 from rodsim.convergence.study import Result, Section, Study
 from rodsim.errors import FileError
 
 NEAR = 2.0  # times the reference's own error: below this a row's error is not its own
-METHODS = ("rkc", "euler", "rk4")  # in the order of the table
+METHODS = (*ADAPTIVE, *sorted(FIXED_STEP))  # in the order of the table
 HEADS = {
     "time": "error against run time: tolerance of rkc, step of euler and rk4",
     "points": "error of the discretisation: points at fixed length and epsilon",
@@ -51,7 +52,7 @@ def text(study: Study) -> str:
 
 
 def _section(study, section):
-    unit, swims = study.case.units.length, study.scene.strain_twist.driven
+    unit, swims = study.case.units.length, study.scene.parts.driven
     yield HEADS[section.axis]
     own = "" if section.own is None else f": good to {section.own.position:.1e} {unit}"
     yield f"reference: {section.reference}{own}"

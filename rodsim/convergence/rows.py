@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from rodsim.case.methods import FIXED_STEP
+
 AXES = ("tolerance", "step", "points", "epsilon")
-FIXED = ("euler", "rk4")
 TOLERANCES = tuple(10.0 ** (k / 2) for k in range(4, -5, -1))  # times the case's own
 REFERENCE, CHECK = 1e-4, 1e-3  # of the case's tolerance
 TIGHTEST = 1e-12
@@ -61,17 +62,17 @@ def tolerance_rows(case, rate) -> list[Row]:
 def step_rows(case, limits) -> list[Row]:
     """For each method of fixed step the longest stable step, for Euler also its half."""
     rows = []
-    for method in FIXED:
-        count = _steps(case.time.end, STABLE * limits.largest_steps[method])
-        for halving in range(ROWS[method]):
+    for name, method in sorted(FIXED_STEP.items()):
+        count = _steps(case.time.end, STABLE * limits.largest_steps[name])
+        for halving in range(ROWS[name]):
             step = case.time.end / (count * 2**halving)
             overrides = (
-                f"time.integrator={method}",
+                f"time.integrator={name}",
                 f"time.step={step!r}",
                 "time.tolerance=null",
             )
-            stages = {"euler": 1, "rk4": 4}[method]
-            rows.append(Row("step", method, step, overrides, stages * case.time.end / step))
+            cost = method.stages * case.time.end / step
+            rows.append(Row("step", name, step, overrides, cost))
     return rows
 
 

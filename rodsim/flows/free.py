@@ -12,9 +12,9 @@ that do not need w, and for a plane of constant x, where g_x = m_y = m_z = 0 and
 are not 0: the lines under ``if not planar`` are what the third dimension adds. What a scene does
 not use is never compiled.
 
-The kernels take (targets, sources, loads, epsilon, viscosity, out): targets (3, T), sources (3, N),
-loads (6, N) with g in rows 0-2 and m in rows 3-5; out (6, T): u in rows 0-2, w in rows 3-5, or
-(3, T) without w; all C-contiguous.
+The kernels take (targets, sources, loads, epsilon, viscosity, out) and add to ``out``, as all flows
+do: targets (3, T), sources (3, N), loads (6, N) with g in rows 0-2 and m in rows 3-5; out (6, T):
+u in rows 0-2, w in rows 3-5, or (3, T) without w; all C-contiguous.
 """
 
 import math
@@ -23,6 +23,7 @@ from functools import lru_cache
 from numba import prange
 
 from rodsim.compiled.flags import parallel_kernel
+from rodsim.compiled.kernels import part
 from rodsim.flows.blobs import (
     ALGEBRAIC7,
     ALGEBRAIC9,
@@ -73,9 +74,13 @@ def _sum(blob, planar, angular):
                         wx += axial * rx
                         wy += q * (gz * rx - gx * rz) + d1 * my + axial * ry
                         wz += q * (gx * ry - gy * rx) + d1 * mz + axial * rz
-            out[0, i], out[1, i], out[2, i] = scale * ux, scale * uy, scale * uz
+            out[0, i] += scale * ux
+            out[1, i] += scale * uy
+            out[2, i] += scale * uz
             if angular:
-                out[3, i], out[4, i], out[5, i] = scale * wx, scale * wy, scale * wz
+                out[3, i] += scale * wx
+                out[4, i] += scale * wy
+                out[5, i] += scale * wz
 
     return fused_sum
 
@@ -93,6 +98,45 @@ def velocity_kernel(blob, planar=False, angular=True):
     if planar:
         return PLANAR_7 if blob == ALGEBRAIC7 else PLANAR_9
     return SPATIAL_7 if blob == ALGEBRAIC7 else SPATIAL_9
+
+
+def _rods_part(blob, planar):
+    """Make the part that moves the rods; ``fixed`` is (epsilon, viscosity)."""
+    seven = blob == ALGEBRAIC7
+
+    @part
+    def move_rods(row, fixed, rods, state, loads, velocities):
+        points = state[0]
+        if planar:
+            if seven:
+                PLANAR_7(points, points, loads, fixed[0], fixed[1], velocities[0])
+            else:
+                PLANAR_9(points, points, loads, fixed[0], fixed[1], velocities[0])
+        elif seven:
+            SPATIAL_7(points, points, loads, fixed[0], fixed[1], velocities[0])
+        else:
+            SPATIAL_9(points, points, loads, fixed[0], fixed[1], velocities[0])
+
+    return move_rods
+
+
+def _tracers_part(blob):
+    """Make the part that moves tracers; ``fixed`` is (epsilon, viscosity)."""
+    seven = blob == ALGEBRAIC7
+
+    @part
+    def move_tracers(row, fixed, rods, state, loads, velocities):
+        if seven:
+            FLOW_7(state[2], state[0], loads, fixed[0], fixed[1], velocities[1])
+        else:
+            FLOW_9(state[2], state[0], loads, fixed[0], fixed[1], velocities[1])
+
+    return move_tracers
+
+
+spatial_7, spatial_9 = (_rods_part(blob, False) for blob in (ALGEBRAIC7, ALGEBRAIC9))
+planar_7, planar_9 = (_rods_part(blob, True) for blob in (ALGEBRAIC7, ALGEBRAIC9))
+tracers_7, tracers_9 = (_tracers_part(blob) for blob in (ALGEBRAIC7, ALGEBRAIC9))
 
 
 @lru_cache

@@ -40,7 +40,7 @@ def velocity(
     """
     targets, sources, loads = _arrays(targets, sources, forces, torques)
     kernel = velocity_kernel(_blob(blob), False, bool(angular))
-    out = np.empty((6 if angular else 3, targets.shape[1]))
+    out = np.zeros((6 if angular else 3, targets.shape[1]))
     fluid = _positive(epsilon, "epsilon"), _positive(viscosity, "viscosity")
     with computing():
         kernel(targets, sources, loads, *fluid, out)

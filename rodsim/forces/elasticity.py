@@ -14,7 +14,7 @@ between neighbouring triads, e its axis, V = 1/2 sum_i D^i_k x D^i_(k+1) = sin(t
 Neither has a small-angle singularity. At a half-turn c = 0 and the principal square root does not
 exist: the loads become NaN, and ``first_half_turn`` says where.
 
-``rods`` is ``Rods.tables``: first, count, closed, spacing (R,) and moduli (6, R).
+``rods`` is ``nodes.Rods.tables``: first, count, closed, spacing (R,) and moduli (6, R).
 """
 
 import math
@@ -22,9 +22,8 @@ import math
 import numpy as np
 
 from rodsim.compiled.constants import HALF_TURN
-from rodsim.compiled.flags import MAT, ONE, RODS, TRIADS, VEC, inline, kernel, part
-
-ENERGIES = ("bending_energy", "twisting_energy", "shear_energy", "stretch_energy")
+from rodsim.compiled.flags import MAT, ONE, RODS, TRIADS, VEC, inline, kernel, unsigned
+from rodsim.compiled.kernels import part
 
 
 @inline
@@ -86,11 +85,11 @@ def _segment_loads(X, D, omega, a, b, ds, k, j, internal):
 
 @inline
 def _balance(X, internal, loads, k, before, after):
-    """Write g and m of point k, (30) and (31), from the segments on its two sides."""
+    """Add g and m of point k, (30) and (31), from the segments on its two sides."""
     for c in range(3):
         p, q = (c + 1) % 3, (c + 2) % 3
-        loads[c, k] = internal[c, k] - internal[c, before]
-        loads[3 + c, k] = (internal[3 + c, k] - internal[3 + c, before]) + 0.5 * (
+        loads[c, k] += internal[c, k] - internal[c, before]
+        loads[3 + c, k] += (internal[3 + c, k] - internal[3 + c, before]) + 0.5 * (
             (X[p, after] - X[p, k]) * internal[q, k]
             - (X[q, after] - X[q, k]) * internal[p, k]
             + (X[p, k] - X[p, before]) * internal[q, before]
@@ -98,18 +97,18 @@ def _balance(X, internal, loads, k, before, after):
         )
 
 
-@kernel(f"void({MAT}, {TRIADS}, {MAT}, {RODS}, {MAT}, {MAT})")
-def point_loads(X, D, omega, rods, internal, loads):
-    """Point forces and torques of the rods on the fluid, g_k = -f_k ds and m_k = -n_k ds.
+@kernel(f"void({MAT}, {TRIADS}, {MAT}, {RODS}, {MAT})")
+def point_loads(X, D, omega, rods, loads):
+    """Add the point forces and torques of the rods on the fluid, g_k = -f_k ds, m_k = -n_k ds.
 
     F^i = b_i (D^i . X' - delta_3i)                                                  (23)
     N^i = a_i (D^j' . D^l - Omega_i)                                                 (24)-(26)
     g_k = F_(k+1/2) - F_(k-1/2)                                                      (30)
     m_k = N_(k+1/2) - N_(k-1/2) + 1/2 (dX x F)_(k+1/2) + 1/2 (dX x F)_(k-1/2)        (31)
 
-    omega (3, N): strain twist at the middle of each segment; internal (6, N): scratch, F in rows
-    0-2 and N in rows 3-5 of each segment on return; loads (6, N): g, then m.
+    omega (3, N): strain twist at the middle of each segment; loads (6, N): g, then m.
     """
+    internal = np.empty((6, X.shape[1]))  # F in rows 0-2 and N in rows 3-5 of each segment
     firsts, counts, closed, spacing, moduli = rods
     for r in range(firsts.size):
         first, ds = np.uint64(firsts[r]), spacing[r]
@@ -130,6 +129,13 @@ def point_loads(X, D, omega, rods, internal, loads):
 
 
 @part
+def elastic_loads(row, fixed, rods, state, loads, velocities):
+    """The part of elastic rods: ``row`` is the strain twist, see :func:`point_loads`."""
+    position, director, _ = state
+    point_loads(position, director, row.reshape(3, position.shape[1]), rods, loads)
+
+
+@unsigned
 def segment_strain(X, D, k, j, ds, strain, half):
     """Strains of the segment from point k to point j, and the triad of its half point.
 
@@ -174,7 +180,7 @@ def energies(X, D, omega, rods, out, length):
             )
 
 
-@part
+@unsigned
 def first_half_turn(D, rods):
     """Return the first point whose triad is a half-turn away from the next one's, or -1."""
     first, count, closed, _, _ = rods

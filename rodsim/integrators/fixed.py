@@ -1,5 +1,6 @@
 """What the fixed-step methods share: whole steps, counted."""
 
+from rodsim.case.methods import Method
 from rodsim.integrators.step import Step
 from rodsim.scene.state import State
 from rodsim.scene.system import RodSystem
@@ -8,14 +9,14 @@ from rodsim.scene.system import RodSystem
 class FixedStep:
     """Steps of equal size; time is counted, t_n = n * size, never accumulated."""
 
-    stages: int
+    method: Method
     spectral_radius = float("nan")
 
     def __init__(self, system: RodSystem, step: float):
         self.system = system
         self.size = step
         self.accepted = self.rejected = 0
-        self.max_stages = self.stages
+        self.max_stages = self.method.stages
 
     def state(self) -> dict:
         """Return what the steps to come depend on, for a checkpoint, and the counters."""

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rodsim.case.methods import FIXED_STEP
 from rodsim.errors import CaseError, StepFailure, UsageError
-from rodsim.integrators import FIXED_STEP
 from rodsim.integrators.rkc import RADIUS_SAFETY, stages_for
 from rodsim.integrators.spectral import SpectralRadius
 
@@ -36,7 +36,7 @@ def stability(system, radius: SpectralRadius | None = None) -> Limits:
             f"the fastest rate of this scene comes out as {rho:.3g}: its numbers are too large or "
             "too small to compute with; choose other units"
         )
-    steps = {name: method.stability_limit / rho for name, method in FIXED_STEP.items()}
+    steps = {name: method.limit / rho for name, method in FIXED_STEP.items()}
     sizes = [float(f"{factor / rho:.0e}") for factor in (1e1, 1e2, 1e3, 1e4)]
     return Limits(rho, steps, {h: stages_for(h, RADIUS_SAFETY * rho) for h in sizes})
 
@@ -90,12 +90,12 @@ class RateWatch:
 
     def check(self, state) -> None:
         """Raise StepFailure when the step has come to lie above the limit of stability."""
-        method = self.integrator
-        method.spectral_radius = self._radius.estimate(state)
-        limit = method.stability_limit / method.spectral_radius
-        if method.size > GROWN * limit:
+        integrator = self.integrator
+        integrator.spectral_radius = self._radius.estimate(state)
+        limit = integrator.method.limit / integrator.spectral_radius
+        if integrator.size > GROWN * limit:
             raise StepFailure(
-                f"the fastest rate has grown to {method.spectral_radius:.3g}, "
+                f"the fastest rate has grown to {integrator.spectral_radius:.3g}, "
                 f"the largest stable step shrunk to {limit:.3g}",
                 state,
             )

@@ -1,5 +1,6 @@
 """The classical Runge-Kutta method of order 4, on rotation vectors (Munthe-Kaas)."""
 
+from rodsim.case.methods import METHODS
 from rodsim.integrators.fixed import FixedStep
 
 
@@ -10,9 +11,7 @@ class RK4(FixedStep):
     (``rotations.rotation_vector_rate``).
     """
 
-    order = 4
-    stages = 4
-    stability_limit = 2.785293563405282  # negative real axis: |1 + z + z^2/2 + z^3/6 + z^4/24| = 1
+    method = METHODS["rk4"]
 
     def increment(self, state):
         """Return h/6 (k_1 + 2 k_2 + 2 k_3 + k_4)."""

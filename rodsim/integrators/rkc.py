@@ -12,6 +12,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from rodsim.case.methods import METHODS
 from rodsim.errors import StepFailure
 from rodsim.integrators.defect import Defect
 from rodsim.integrators.spectral import SpectralRadius
@@ -85,7 +86,7 @@ class RKC:
     ``longest`` : no step is longer than this.
     """
 
-    order = 3
+    method = METHODS["rkc"]
 
     def __init__(
         self,
@@ -222,11 +223,11 @@ class RKC:
 
         A step over whole periods of a wave would see the same rate at both ends and find no error.
         """
-        travel = self.system.scene.strain_twist.travel
+        travel = self.system.scene.parts.travel
         while (far := travel(state.time, size)) > MOST_TRAVEL:
             size *= max(0.1, 0.9 * MOST_TRAVEL / far)
             if not size > 1e-13 * end:
-                raise StepFailure("the strain twist changes faster than steps can follow", state)
+                raise StepFailure("a drive changes faster than steps can follow", state)
         return size
 
     def _estimate_radius(self, state, f0):

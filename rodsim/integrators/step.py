@@ -7,6 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
+from rodsim.case.methods import Method
 from rodsim.compiled.rotations import angular_velocity
 from rodsim.scene.state import State
 from rodsim.scene.system import RodSystem
@@ -65,7 +66,7 @@ class Step:
 class Integrator(Protocol):
     """One method in time. ``steps`` yields accepted steps until ``end`` is reached exactly."""
 
-    order: int
+    method: Method
     accepted: int
     rejected: int
     max_stages: int

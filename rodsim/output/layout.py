@@ -12,6 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rodsim.nodes import Rods
+
 FILETYPE = "rodsim"
 FORMAT = 1
 STATUS = ("running", "finished", "stopped", "diverged")
@@ -75,18 +77,6 @@ class CaseText:
 
 
 @dataclass(frozen=True)
-class RodRecord:
-    """What ``/rods/<name>`` holds: its nodes from ``first`` on, its moduli a1 a2 a3 b1 b2 b3."""
-
-    name: str
-    first: int
-    count: int
-    closed: bool
-    spacing: float
-    moduli: tuple[float, ...]
-
-
-@dataclass(frozen=True)
 class Series:
     """One quantity over time: where it is stored, the shape of one frame, its dimension."""
 
@@ -103,22 +93,24 @@ class Plan:
     times : (T,) of all frames to come. tracers : their number P. fields : names out of ``FIELDS``;
     position is always stored. units : names of the units of ``length``, ``mass`` and ``time``.
     density : whether kinetic energy is stored. checkpoint : the first state of the run, which all
-    later ones are like: arrays and numbers by name.
+    later ones are like: arrays and numbers by name. extra : observables that not every scene has,
+    (name, shape, dimension) each.
     """
 
     case: CaseText
-    rods: list[RodRecord]
+    rods: Rods
     times: np.ndarray
     tracers: int
     fields: tuple[str, ...]
     units: dict[str, str]
     density: bool
     checkpoint: dict
+    extra: tuple = ()
 
     @property
     def points(self) -> int:
         """Number N of points of all rods."""
-        return sum(rod.count for rod in self.rods)
+        return self.rods.points
 
     def fields_stored(self) -> Iterator[Series]:
         """Yield what is stored of every point and tracer; the position always is."""
@@ -130,12 +122,14 @@ class Plan:
             yield Series("tracers", TRACERS, (self.tracers, 3), LENGTH)
 
     def observables_stored(self) -> Iterator[Series]:
-        """Yield what is stored of every rod, or of all together."""
+        """Yield what is stored of every rod, of all together, and of what only some scenes have."""
         for name, dimension in PER_ROD.items():
             if self.density or name != "kinetic_energy":
                 yield Series(name, f"{OBSERVABLES}/{name}", (len(self.rods),), dimension)
         for name, dimension in BALANCES.items():
             yield Series(name, f"{OBSERVABLES}/{name}", (3,), dimension)
+        for name, shape, dimension in self.extra:
+            yield Series(name, f"{OBSERVABLES}/{name}", shape, dimension)
 
     def stored(self) -> list[Series]:
         """Return every series of the file."""

@@ -8,10 +8,11 @@ from operator import index
 import numpy as np
 
 from rodsim.errors import FileError
+from rodsim.nodes import Rod, Rods
 from rodsim.output import layout
 from rodsim.output.checkpoint import read_checkpoint
 from rodsim.output.guarded import GuardedFile
-from rodsim.output.layout import CLOCK, OBSERVABLES, TRACERS, TRAJECTORY, RodRecord
+from rodsim.output.layout import CLOCK, OBSERVABLES, TRACERS, TRAJECTORY
 
 
 def open_trajectory(path) -> Trajectory:
@@ -30,7 +31,8 @@ class Trajectory:
 
     Attributes
     ----------
-    frames : T. points : N. time, steps : (T,), of each frame. rods : list of RodRecord, in order.
+    frames : T. points : N. time, steps : (T,), of each frame.
+    rods : :class:`rodsim.nodes.Rods`, in order.
     planned : times of all frames the run is to have.
     status : running, finished, stopped or diverged. version, created, format : of the file.
     case_source, case_resolved : text. overrides, resumes : lists of text.
@@ -74,11 +76,12 @@ class Trajectory:
         return self._values(f"{TRAJECTORY}/{name}", shape, frames)
 
     def observable(self, name: str, frames=slice(None)) -> np.ndarray:
-        """Return one of ``observables``: (T, R), for net_force and net_torque (T, 3)."""
+        """Return one of ``observables``: (T, R) of each rod; of all, (T,) or for vectors (T, 3)."""
         if name not in self.observables:
             raise FileError(f"{self.path}: has no {name}; it has {', '.join(self.observables)}")
-        columns = 3 if name in layout.BALANCES else len(self.rods)
-        return self._values(f"{OBSERVABLES}/{name}", (columns,), frames)
+        shape = {name: (len(self.rods),) for name in layout.PER_ROD}
+        shape |= dict.fromkeys(layout.BALANCES, (3,))
+        return self._values(f"{OBSERVABLES}/{name}", shape.get(name), frames)
 
     @property
     def fields(self) -> list[str]:
@@ -91,7 +94,8 @@ class Trajectory:
     def observables(self) -> list[str]:
         """Names of the stored observables."""
         stored = self._file.names(OBSERVABLES)
-        return [name for name in (*layout.PER_ROD, *layout.BALANCES) if name in stored]
+        known = (*layout.PER_ROD, *layout.BALANCES)
+        return [n for n in known if n in stored] + [n for n in stored if n not in known]
 
     @property
     def position(self) -> np.ndarray:
@@ -162,7 +166,7 @@ class Trajectory:
     def _read_frames(self):
         self.frames = int(self._file.array("committed", "i", ()))
         self.rods = self._read_rods()
-        self.points = sum(rod.count for rod in self.rods)
+        self.points = self.rods.points
         self.time = self._rows(f"{CLOCK}/time", "f", ())
         self.steps = self._rows(f"{CLOCK}/step", "i", ())
         self.planned = self._file.array("case/times", "f", (None,), at_least=self.frames)
@@ -177,7 +181,7 @@ class Trajectory:
             index, start, count = (get(where, key, int) for key in ("index", "first", "count"))
             closed, spacing = get(where, "closed", bool), get(where, "spacing", float)
             moduli = tuple(get(where, "moduli", float, (6,)).tolist())
-            found.append((index, where, RodRecord(name, start, count, closed, spacing, moduli)))
+            found.append((index, where, Rod(name, start, count, closed, spacing, moduli)))
         found.sort(key=lambda rod: rod[0])
         return self._checked(found)
 
@@ -191,7 +195,7 @@ class Trajectory:
                 raise self._file.damaged(f"{where} has a spacing or moduli that no rod can have")
             rods.append(rod)
             first += rod.count
-        return rods
+        return Rods(rods)
 
     def _values(self, where, shape, frames=slice(None)):
         return self._rows(f"{where}/value", "f", shape, frames)
@@ -204,5 +208,6 @@ class Trajectory:
         chosen = range(self.frames)[frames]
         forward = chosen if chosen.step > 0 else chosen[::-1]
         rows = np.s_[forward.start : forward.stop : forward.step]
-        values = self._file.array(name, kinds, (None, *shape), rows, at_least=self.frames)
+        whole = None if shape is None else (None, *shape)
+        values = self._file.array(name, kinds, whole, rows, at_least=self.frames)
         return values if chosen.step > 0 else values[::-1]

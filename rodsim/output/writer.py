@@ -214,7 +214,9 @@ def _row(series, given, point_axis):
     """Return what is stored of one quantity in a frame: points first, as readers want it."""
     if series.name not in given:
         raise ValueError(f"{series.name}: missing in a frame")
-    row = np.moveaxis(np.asarray(given[series.name]), point_axis, 0)
+    row = np.asarray(given[series.name])
+    if row.ndim:
+        row = np.moveaxis(row, point_axis, 0)
     if row.shape != series.shape:
         raise ValueError(f"{series.name}: {row.shape} in a frame, not {series.shape}")
     if not np.isfinite(row).all():

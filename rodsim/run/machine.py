@@ -3,8 +3,8 @@
 from functools import cached_property
 
 from rodsim.compiled.threads import threads_for
-from rodsim.integrators import make_integrator
 from rodsim.integrators.limits import Limits, check_step, stability
+from rodsim.integrators.make import make_integrator
 from rodsim.integrators.spectral import SpectralRadius
 from rodsim.run.watch import Watch
 from rodsim.scene.system import RodSystem

@@ -72,13 +72,14 @@ class Past:
                 "those of one run"
             )
 
-    def shape(self, name: str):
+    def shape(self, name: str, shape):
         """Return position, director, spacing, closed of a rod that began as a shape file."""
-        record = {rod.name: rod for rod in self.run.rods}[name]
-        nodes = slice(record.first, record.first + record.count)
-        position = np.array(self.snapshot["position"][:, nodes])
-        director = np.array(self.snapshot["director"][:, :, nodes])
-        return position, director, record.spacing, record.closed
+        if shape.kind != "file":
+            return None
+        rod = next(rod for rod in self.run.rods if rod.name == name)
+        position = np.array(self.snapshot["position"][:, rod.nodes])
+        director = np.array(self.snapshot["director"][:, :, rod.nodes])
+        return position, director, rod.spacing, rod.closed
 
     def writer(self, machine):
         """Return the writer that goes on with the file, or with a longer copy in its place."""

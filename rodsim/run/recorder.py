@@ -6,8 +6,9 @@ from time import perf_counter
 import numpy as np
 
 from rodsim.errors import StepFailure
-from rodsim.output import CaseText, Plan, RodRecord
+from rodsim.output import CaseText, Plan
 from rodsim.output.writer import NotFinite
+from rodsim.scene.series import extra_series
 
 SECONDS_BETWEEN_CHECKPOINTS = 60.0  # at most, if no frame comes
 SECONDS_BETWEEN_SYNCS = 10.0  # at least: waiting for the disk at every frame would cost too much
@@ -25,28 +26,17 @@ def frame_times(end: float, interval: float) -> np.ndarray:
 
 def plan_output(case, scene, checkpoint: dict) -> Plan:
     """Return what the output file of a run is made from, with room for every frame."""
-    rods = scene.rods
-    records = [
-        RodRecord(
-            name=name,
-            first=int(rods.first[r]),
-            count=int(rods.count[r]),
-            closed=bool(rods.closed[r]),
-            spacing=float(rods.spacing[r]),
-            moduli=tuple(rods.moduli[:, r]),
-        )
-        for r, name in enumerate(rods.names)
-    ]
     source = case.source
     return Plan(
         case=CaseText(source.text, json.dumps(case.resolved(), indent=1), list(source.overrides)),
-        rods=records,
+        rods=scene.rods,
         times=frame_times(case.time.end, case.interval),
         tracers=scene.initial.tracer.shape[1],
         fields=case.output.fields,
         units=case.units.model_dump(),
         density=scene.density is not None,
         checkpoint=checkpoint,
+        extra=extra_series(scene),
     )
 
 
@@ -87,8 +77,7 @@ class Recorder:
         try:
             self.writer.write_frame(self.next_frame, number, *self.system.observe(state, rates))
         except NotFinite as error:
-            given = np.isfinite(self.system.scene.strain_twist(state.time)).all()
-            what = error.name if given else "the strain twist"
+            what = self.system.scene.parts.not_finite(state.time) or error.name
             raise StepFailure(f"{what} is not finite at t = {state.time:.6g}", state) from None
         self.next_frame += 1
         self.output_seconds += perf_counter() - begin

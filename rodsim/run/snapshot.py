@@ -18,6 +18,7 @@ def capture(machine, recorder, state: State) -> dict:
         "position": state.position,
         "director": state.director,
         "tracer": state.tracer,
+        **({"work": state.work} if state.work.size else {}),
         "force": int(machine.force),
         "frames": recorder.next_frame,
         "clock": recorder.clock(),
@@ -36,7 +37,8 @@ def restore(machine, recorder, snapshot: dict) -> State:
     machine.system.evaluations = snapshot["evaluations"]
     machine.system.seconds = snapshot["evaluation_seconds"]
     recorder.restore(snapshot["frames"], snapshot["clock"])
-    return State(*(snapshot[name] for name in ("time", "position", "director", "tracer")))
+    names = ("time", "position", "director", "tracer", "work")
+    return State(*(snapshot[name] for name in names if name in snapshot))
 
 
 def _check(found, expected):

@@ -17,19 +17,20 @@ from pathlib import Path
 from time import perf_counter
 from zlib import crc32
 
+from rodsim.compiled.kernels import jit_is_off
 from rodsim.compiled.settings import fingerprint, why_not_kept
 from rodsim.processes import this_rodsim
 
 LIST = "compiled.json"
 
 
-def ensure_compiled(case, say) -> float:
-    """Compile what ``case`` needs if this installation has not yet; return the seconds it took.
+def ensure_compiled(scene, say) -> float:
+    """Compile what ``scene`` needs if this installation has not yet; return the seconds it took.
 
     Call after ``settings.prepare``. ``say`` is called with a line for the user before the wait.
     Of several processes that come at once one compiles, and the others wait for it.
     """
-    if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
+    if jit_is_off():
         return 0.0
     reason = why_not_kept()
     how = f"as at every run, for nothing can be kept ({reason})" if reason else "once"
@@ -38,9 +39,9 @@ def ensure_compiled(case, say) -> float:
         say(compiling)
         return 0.0
     folder = Path(os.environ["NUMBA_CACHE_DIR"])
-    variant = (case.fluid.blob, str(int(case.plane is not None)), str(int(bool(case.tracers))))
+    kernels = sorted({part.where for part in scene.parts})
     # A folder that the user has set can be shared by several versions and installations.
-    kind = "-".join((fingerprint(), *variant))
+    kind = "-".join((fingerprint(), *kernels))
     if is_compiled(folder, kind):
         return 0.0
     import subprocess  # what is compiled already has no use for it
@@ -51,7 +52,7 @@ def ensure_compiled(case, say) -> float:
         if not is_compiled(folder, kind):
             if _is_ours(folder, kind) and not _undamaged(folder):
                 _clear(folder)
-            command = [*this_rodsim("rodsim.run.warmup"), *variant]
+            command = [*this_rodsim("rodsim.run.warmup"), *kernels]
             if subprocess.run(command, capture_output=True, check=False).returncode == 0:
                 note_compiled(folder, kind)
     return perf_counter() - start
@@ -116,21 +117,17 @@ def _alone(folder):
         yield
 
 
-def main(blob: str, planar: str, tracers: str) -> None:
-    """Fill the cache with the kernels of one kind of scene."""
+def main(kernels) -> None:
+    """Fill the cache with what every run needs, and with the parts of one kind of scene."""
     from rodsim.compiled.settings import prepare
 
     prepare()
-    import numpy as np
+    import rodsim.run.machine  # noqa: F401  (importing it compiles everything but the parts)
+    from rodsim.compiled.kernels import address_of
 
-    import rodsim.run.machine  # noqa: F401  (importing it compiles everything but the sums)
-    from rodsim.flows.velocity import BLOBS, velocity_kernel
-    from rodsim.scene.loop import stage_loop
-
-    stage_loop(BLOBS[blob], planar == "1", tracers == "1")
-    points, loads, out = np.zeros((3, 2)), np.zeros((6, 2)), np.zeros((6, 2))
-    velocity_kernel(BLOBS[blob], planar == "1")(points, points, loads, 1.0, 1.0, out)
+    for kernel in kernels:
+        address_of(kernel)
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main(sys.argv[1:])

@@ -8,7 +8,6 @@ from rodsim.case.check import ABSURD
 from rodsim.compiled.flags import MAT, TRIADS, kernel
 from rodsim.errors import DivergedError, StepFailure
 from rodsim.files import DEFAULT_OUTPUT
-from rodsim.integrators.fixed import FixedStep
 from rodsim.integrators.limits import RateWatch
 from rodsim.integrators.step import Step
 from rodsim.scene.state import State
@@ -54,7 +53,7 @@ class Watch:
         """``radius``: the SpectralRadius that follows the rate of a fixed step, or None."""
         self.system, self._command = system, case.source.command
         self.output = DEFAULT_OUTPUT  # what the command of a remedy writes
-        fixed = isinstance(integrator, FixedStep)
+        fixed = not integrator.method.adaptive
         self.remedy = (_fixed_step_remedy if fixed else _adaptive_remedy)(case, system)
         self._rates = RateWatch(system, integrator, radius) if fixed and radius else None
         initial = system.scene.initial.position

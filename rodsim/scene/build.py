@@ -1,14 +1,18 @@
 """Case -> scene: shapes are built and placed, all rods put into one array, geometry checked."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from rodsim.case import check_strain_twist, spacings_differ
 from rodsim.compiled.constants import HALF_TURN
+from rodsim.compiled.parts import PartList
 from rodsim.errors import CaseError, FileError
+from rodsim.nodes import lay_out
+from rodsim.registry import kinds
 from rodsim.scene.shapes import FORMULAS, place
-from rodsim.scene.state import Rods, Scene, State, StrainTwist
+from rodsim.scene.state import Scene, State
 from rodsim.scene.stored import read_shape
 from rodsim.scene.tracers import tube
 
@@ -18,14 +22,19 @@ PLANE_TOLERANCE = 1e-12  # of the rod's length, as the case file's contract has 
 def build_scene(case, stored=None) -> Scene:
     """Return the scene of a validated case.
 
-    ``stored``: called with a rod's name instead of reading its shape file, where it has one;
-    returns position, director, spacing, closed.
+    ``stored``: called with a rod's name and shape, returns position, director, spacing, closed of
+    a rod that is not to be built from its shape, or None.
 
     Raises CaseError for what only the geometry can tell (spacings that differ, a planar scene
     that is not, triads a half-turn apart) and FileError for a shape file.
     """
     built = [_build_rod(case, name, rod, stored) for name, rod in case.rods.items()]
-    rods = _tables(case, built)
+    rods = lay_out(
+        (name, position.shape[1], closed, spacing, rod.moduli.values)
+        for (name, rod), (position, _, spacing, closed) in zip(
+            case.rods.items(), built, strict=True
+        )
+    )
     position = np.ascontiguousarray(np.concatenate([rod[0] for rod in built], axis=1))
     director = np.ascontiguousarray(np.concatenate([rod[1] for rod in built], axis=2))
     epsilon, problems = _epsilon(case, rods)
@@ -36,9 +45,8 @@ def build_scene(case, stored=None) -> Scene:
     if problems:
         raise CaseError(problems)
     tracer, groups = _tracers(case, rods, built)
-    return Scene(
+    scene = Scene(
         rods=rods,
-        strain_twist=StrainTwist(rods, [rod.strain_twist for rod in case.rods.values()]),
         epsilon=epsilon,
         viscosity=case.fluid.viscosity,
         blob=case.fluid.blob,
@@ -47,6 +55,13 @@ def build_scene(case, stored=None) -> Scene:
         tracer_groups=groups,
         initial=State(0.0, position, director, tracer),
     )
+    return with_parts(scene, [part for kind in kinds() for part in kind.build(case, scene)])
+
+
+def with_parts(scene: Scene, parts) -> Scene:
+    """Return a scene with other parts, and with a ledger at zero for what acts from outside."""
+    scene = replace(scene, parts=PartList(parts))
+    return replace(scene, initial=replace(scene.initial, work=np.zeros(scene.ledger)))
 
 
 def _folder(case):
@@ -56,9 +71,9 @@ def _folder(case):
 def _build_rod(case, name, rod, stored):
     """Return position, director, spacing, closed of one rod, placed."""
     shape = rod.shape
+    if stored is not None and (found := stored(name, shape)) is not None:
+        return found
     if shape.kind == "file":
-        if stored is not None:
-            return stored(name)
         try:
             position, director, spacing, closed = read_shape(shape, _folder(case))
         except FileError as error:
@@ -80,18 +95,6 @@ def _check_stored(case, name, rod, spacing, segments):
     if errors:
         where = ("rods", name)
         raise CaseError([case.source.problem((*where, *path), reason) for path, reason in errors])
-
-
-def _tables(case, built):
-    count = np.array([rod[0].shape[1] for rod in built], dtype=np.int64)
-    return Rods(
-        names=tuple(case.rods),
-        first=np.concatenate([[0], np.cumsum(count)[:-1]]).astype(np.int64),
-        count=count,
-        closed=np.array([rod[3] for rod in built], dtype=np.bool_),
-        spacing=np.array([rod[2] for rod in built], dtype=float),
-        moduli=np.array([rod.moduli.values for rod in case.rods.values()], dtype=float).T.copy(),
-    )
 
 
 def _epsilon(case, rods):

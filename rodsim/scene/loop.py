@@ -1,25 +1,99 @@
-"""Evaluations in a compiled loop: the stages of a step without a Python call in between."""
+"""The one loop of all scenes: the stages of a step, each evaluation the sum of its parts.
 
-from functools import lru_cache
+Nothing here knows what acts in a scene: parts are called by their addresses, without a Python call
+in between.
+"""
 
 import numpy as np
-from numba import get_num_threads
 
-from rodsim.compiled.flags import MAT, SYSTEM, TRIADS, VEC, inline, kernel
+from rodsim.compiled.flags import (
+    INT_MAT,
+    MAT,
+    RODS,
+    STATE,
+    TRIADS,
+    VEC,
+    call_part,
+    inline,
+    kernel,
+)
 from rodsim.compiled.rotations import displace, rotation_vector_rate
-from rodsim.flows.blobs import ALGEBRAIC7
-from rodsim.flows.free import FLOW_7, FLOW_9, PLANAR_7, PLANAR_9, SPATIAL_7, SPATIAL_9
-from rodsim.forces.elasticity import point_loads
+from rodsim.scene.calls import ACCOUNT, ADDRESS, DRIVEN, FIXED, FIXED_END, IS_FLOW, ROW, ROW_END
+
+CALLS = f"{INT_MAT}, {VEC}"  # scene.calls.Calls: table, numbers
+WORK = f"Tuple(({STATE}, {MAT}, {TRIADS}))"  # a state, loads, loads or velocities of each account
 
 
 @kernel(f"void({VEC}, {VEC})")
 def to_increments(y, velocities):
     """Turn velocities at increments ``y`` into dy/dt, in place: w becomes d theta/dt.
 
-    Tracers come after the rods' 6 N numbers; their part must have been cut off both vectors.
+    What comes after the rods' 6 N numbers must have been cut off both vectors.
     """
     n = y.size // 6
     rotation_vector_rate(y[3 * n :].reshape(3, n), velocities[3 * n :].reshape(3, n))
+
+
+@inline
+def _add(share, total):
+    for c in range(total.shape[0]):
+        for k in range(np.uint64(total.shape[1])):
+            total[c, k] += share[c, k]
+
+
+@inline
+def _product(a, b):
+    """Return sum (g.u + m.w)."""
+    total = 0.0
+    for c in range(a.shape[0]):
+        for k in range(np.uint64(a.shape[1])):
+            total += a[c, k] * b[c, k]
+    return total
+
+
+@kernel(f"void({CALLS}, {VEC}, {RODS}, {STATE}, {MAT}, UniTuple({MAT}, 2), {TRIADS})")
+def evaluate(table, numbers, driven, rods, state, loads, velocities, own):
+    """Let every part of a list add to the loads (6, N) and to the velocities (6, N), (3, P).
+
+    driven : the driven rows at the time of the state. own (Q, 6, N): of each of the Q parts whose
+    work is counted, its own loads, or the velocities of the rods that are its own.
+    """
+    for k in range(table.shape[0]):
+        row = (driven if table[k, DRIVEN] else numbers)[table[k, ROW] : table[k, ROW_END]]
+        constants, account = numbers[table[k, FIXED] : table[k, FIXED_END]], table[k, ACCOUNT]
+        address = table[k, ADDRESS]
+        if account < 0:
+            call_part(address, row, constants, rods, state, loads, velocities)
+            continue
+        mine = own[account]
+        mine[:] = 0.0
+        if table[k, IS_FLOW]:
+            call_part(address, row, constants, rods, state, loads, (mine, velocities[1]))
+            _add(mine, velocities[0])
+        else:
+            call_part(address, row, constants, rods, state, mine, velocities)
+            _add(mine, loads)
+
+
+@kernel(f"void({INT_MAT}, {MAT}, {MAT}, {TRIADS}, {VEC})")
+def powers(table, loads, velocities, own, out):
+    """Write the power of each account, then what the fluid dissipates: (Q + 1,).
+
+    Of a force P = sum (g.u + m.w) with its own loads; of a flow u_inf, w_inf
+    P = -sum (g.u_inf + m.w_inf) with all loads. dissipated = sum (g.u + m.w) + the P of all flows,
+    so that the elastic energy follows dE/dt = sum P - dissipated, to O(ds^2).
+    """
+    dissipated = _product(loads, velocities)
+    for k in range(table.shape[0]):
+        account = table[k, ACCOUNT]
+        if account < 0:
+            continue
+        if table[k, IS_FLOW]:
+            out[account] = -_product(loads, own[account])
+            dissipated += out[account]
+        else:
+            out[account] = _product(own[account], velocities)
+    out[own.shape[0]] = dissipated
 
 
 @inline
@@ -39,57 +113,37 @@ def _combine(row, size, y, oldest, f, f0, g):
         oldest[i] = mu * y[i] + nu * oldest[i] + rates
 
 
-@lru_cache
-def stage_loop(blob: int, planar: bool, tracers: bool):
-    """Compile ``run(rods, fluid, base, work, omegas, table, begin, end, size, f0, g, Y, f)``.
-
-    Runs the stages begin <= j < end of a three-term recurrence, with g added to all rates F,
+@kernel(
+    f"void({CALLS}, {MAT}, {RODS}, {STATE}, {WORK}, {MAT}, int64, int64, float64, {VEC}, {VEC}, "
+    f"{MAT}, {VEC})"
+)
+def run_stages(calls, numbers, driven, rods, base, work, table, begin, end, size, f0, g, Y, f):
+    """Run the stages begin <= j < end of a three-term recurrence, with g added to all rates F,
 
         Y_0 = 0,    Y_1 = h mu~_1 (F_0 + g),
         Y_j = mu_j Y_(j-1) + nu_j Y_(j-2) + h (mu~_j (F_(j-1) + g) + gamma~_j (F_0 + g)),
 
-    with Y_j in row j % 2 of Y (2, n) and the four coefficients in row j of ``table``; then writes
-    the velocities (u, w, u at the tracers) at Y_(end-1) into ``f``. With begin = 2 it makes Y_0
-    and Y_1 first; with begin = end = 1 it evaluates at row 0 as it is. Increments are those from
-    the state ``base`` = (position, director, tracer). fluid: epsilon, viscosity; omegas: the
-    strain twist of these evaluations in turn, or one that stands for all.
+    with Y_j in row j % 2 of Y (2, n) and the four coefficients in row j of ``table``; then write
+    the velocities (u, w, u at the tracers, powers of the ledger) at Y_(end-1) into ``f``. With
+    begin = 2 it makes Y_0 and Y_1 first; with begin = end = 1 it evaluates at row 0 as it is.
+    Increments are those from the state ``base``. driven: the driven rows of these evaluations in
+    turn, or one that stands for all.
     """
-    # A loop read from the cache is linked at once, and its sums need the threading layer there.
-    # Numba sees to that for the sums themselves, not always for what calls them.
-    get_num_threads()
-    seven = blob == ALGEBRAIC7
-
-    @kernel(f"void({SYSTEM}, {TRIADS}, {MAT}, int64, int64, float64, {VEC}, {VEC}, {MAT}, {VEC})")
-    def run(rods, fluid, base, work, omegas, table, begin, end, size, f0, g, Y, f):
-        position, director, tracer, internal, loads = work
-        epsilon, viscosity = fluid
-        n = position.shape[1]
-        u = f[: 6 * n].reshape(6, n)
-        if begin == 2:
-            _first(size * table[1, 2], f0, g, Y)
-        for j in range(begin, end + 1):
-            y = Y[(j - 1) % 2]
-            displace(base, y, (position, director, tracer))
-            omega = omegas[j - begin if omegas.shape[0] > 1 else 0]
-            point_loads(position, director, omega, rods, internal, loads)
-            if planar:
-                if seven:
-                    PLANAR_7(position, position, loads, epsilon, viscosity, u)
-                else:
-                    PLANAR_9(position, position, loads, epsilon, viscosity, u)
-            elif seven:
-                SPATIAL_7(position, position, loads, epsilon, viscosity, u)
-            else:
-                SPATIAL_9(position, position, loads, epsilon, viscosity, u)
-            if tracers:
-                markers = tracer.shape[1]
-                flow = f[6 * n :].reshape(3, markers)
-                if seven:
-                    FLOW_7(tracer, position, loads, epsilon, viscosity, flow)
-                else:
-                    FLOW_9(tracer, position, loads, epsilon, viscosity, flow)
-            if j < end:
-                to_increments(y[: 6 * n], f[: 6 * n])
-                _combine(table[j], size, y, Y[j % 2], f, f0, g)
-
-    return run
+    state, loads, own = work
+    n, markers = loads.shape[1], state[2].shape[1]
+    rods_end, tracers_end = 6 * n, 6 * n + 3 * markers
+    velocities = f[:rods_end].reshape(6, n), f[rods_end:tracers_end].reshape(3, markers)
+    if begin == 2:
+        _first(size * table[1, 2], f0, g, Y)
+    for j in range(begin, end + 1):
+        y = Y[(j - 1) % 2]
+        displace(base, y[:tracers_end], state)
+        loads[:] = 0.0
+        f[:] = 0.0
+        now = driven[j - begin if driven.shape[0] > 1 else 0]
+        evaluate(calls, numbers, now, rods, state, loads, velocities, own)
+        if f.size > tracers_end:
+            powers(calls, loads, velocities[0], own, f[tracers_end:])
+        if j < end:
+            to_increments(y[:rods_end], f[:rods_end])
+            _combine(table[j], size, y, Y[j % 2], f, f0, g)

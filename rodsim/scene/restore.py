@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from rodsim.case import case_from_mapping
 from rodsim.errors import CaseError, FileError
-from rodsim.scene.build import _epsilon
-from rodsim.scene.state import Rods, Scene, State, StrainTwist
+from rodsim.scene.build import build_scene
+from rodsim.scene.state import Scene, State
 
 
 def restore_scene(run) -> Scene:
@@ -18,23 +20,26 @@ def restore_scene(run) -> Scene:
     """
     if run.frames == 0:
         raise FileError(f"{run.path}: has no frames yet ({run.status})")
+    first = stored_state(run, 0)
+
+    def stored(name, shape):
+        rod = next(rod for rod in run.rods if rod.name == name)
+        return (
+            first.position[:, rod.nodes],
+            first.director[:, :, rod.nodes],
+            rod.spacing,
+            rod.closed,
+        )
+
     try:
-        case = case_from_mapping(run.case_data(), path=str(run.path))
-        entries = [case.rods[rod.name].strain_twist for rod in run.rods]
-    except (ValueError, KeyError, TypeError, RecursionError, CaseError) as error:
+        resolved = run.case_data()
+        resolved.pop("tracers", None)
+        scene = build_scene(case_from_mapping(resolved, path=str(run.path)), stored)
+    except (ValueError, KeyError, TypeError, StopIteration, CaseError) as error:
         raise FileError(f"{run.path}: damaged: the case in it cannot be used: {error}") from error
-    rods = _rods(run.rods)
-    return Scene(
-        rods=rods,
-        strain_twist=StrainTwist(rods, entries),
-        epsilon=_epsilon(case, rods)[0],
-        viscosity=case.fluid.viscosity,
-        blob=case.fluid.blob,
-        planar=case.plane is not None,
-        density=case.fluid.density,
-        tracer_groups={},
-        initial=stored_state(run, 0),
-    )
+    if scene.rods != run.rods:
+        raise FileError(f"{run.path}: damaged: its rods are not those of its case")
+    return replace(scene, initial=replace(first, work=scene.initial.work))
 
 
 def stored_state(run, frame: int) -> State:
@@ -42,14 +47,3 @@ def stored_state(run, frame: int) -> State:
     position = np.ascontiguousarray(run.read("position", frame).T)
     director = np.ascontiguousarray(run.read("director", frame).transpose(1, 2, 0))
     return State(float(run.time[frame]), position, director, np.zeros((3, 0)))
-
-
-def _rods(records):
-    return Rods(
-        names=tuple(rod.name for rod in records),
-        first=np.array([rod.first for rod in records], dtype=np.int64),
-        count=np.array([rod.count for rod in records], dtype=np.int64),
-        closed=np.array([rod.closed for rod in records], dtype=np.bool_),
-        spacing=np.array([rod.spacing for rod in records], dtype=float),
-        moduli=np.array([rod.moduli for rod in records], dtype=float).T.copy(),
-    )

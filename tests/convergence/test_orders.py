@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scenes import difference, last, system_of
 
-from rodsim.integrators import RK4, Euler
+from rodsim.integrators.euler import Euler
+from rodsim.integrators.rk4 import RK4
 from rodsim.integrators.rkc import RKC
 from rodsim.integrators.spectral import SpectralRadius
 

@@ -6,23 +6,15 @@ import twins
 
 from rodsim.compiled.rotations import rotate
 from rodsim.forces.elasticity import energies, first_half_turn, point_loads, segment_strain
+from rodsim.nodes import lay_out
 from rodsim.scene.shapes import rotation_matrix
-from rodsim.scene.state import Rods
 
-MODULI = np.array([[3.1e-3, 4.7e-3, 2.3e-3, 0.83, 0.71, 1.3]]).T  # nothing equal, nothing 1
+MODULI = np.array([3.1e-3, 4.7e-3, 2.3e-3, 0.83, 0.71, 1.3])  # nothing equal, nothing 1
 
 
-def table(*rods):
+def table(*kinds):
     """Rods from (count, closed, ds)."""
-    count = np.array([rod[0] for rod in rods], dtype=np.int64)
-    return Rods(
-        tuple(f"rod{i}" for i in range(len(rods))),
-        np.concatenate([[0], np.cumsum(count)[:-1]]).astype(np.int64),
-        count,
-        np.array([rod[1] for rod in rods]),
-        np.array([rod[2] for rod in rods]),
-        np.ascontiguousarray(np.repeat(MODULI, len(rods), axis=1)),
-    )
+    return lay_out((f"rod{i}", *kind, MODULI) for i, kind in enumerate(kinds))
 
 
 def bent(points, length=5.3, seed=2, noise=0.0):
@@ -39,8 +31,8 @@ def bent(points, length=5.3, seed=2, noise=0.0):
 
 
 def loads_of(X, D, omega, rods):
-    internal, loads = np.empty((6, rods.points)), np.empty((6, rods.points))
-    point_loads(X, D, omega, rods.tables, internal, loads)
+    loads = np.zeros((6, rods.points))
+    point_loads(X, D, omega, rods.tables, loads)
     return loads
 
 
@@ -60,7 +52,7 @@ def test_loads_equal_their_twin(closed, points):
     X, D, ds = bent(points, noise=0.1)
     omega = strain_twist(points)
     loads = loads_of(X, D, omega, table((points, closed, ds)))
-    g, m = twins.rod_loads(X.T, D.transpose(2, 0, 1), omega.T, ds, MODULI[:, 0], closed)
+    g, m = twins.rod_loads(X.T, D.transpose(2, 0, 1), omega.T, ds, MODULI, closed)
     # The twin's matrix logarithm is good to about 1e-13.
     assert pytest.approx(g, abs=1e-11 * abs(g).max()) == loads[:3].T
     assert pytest.approx(m, abs=1e-11 * abs(m).max()) == loads[3:].T
@@ -227,7 +219,7 @@ def test_energies_of_a_known_state():
                   [0 * s, 0 * s, 1 + 0 * s]])  # fmt: skip
     omega = np.zeros((3, points))
     split = energy_of(X, D, omega, table((points, False, ds)))[:, 0]
-    length, (_, _, a3, b1, _, b3) = ds * (points - 1), MODULI[:, 0]
+    length, (_, _, a3, b1, _, b3) = ds * (points - 1), MODULI
     assert split == pytest.approx(
         [0.0, 0.5 * a3 * twist**2 * length, 0.0, 0.5 * b3 * stretch**2 * length], rel=1e-11
     )

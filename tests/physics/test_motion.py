@@ -7,8 +7,8 @@ from scenes import difference, final_state, fixed, last, system_of
 
 from rodsim.analysis.helix import fit_helix, triad_turns
 from rodsim.case import load_case
-from rodsim.forces.elasticity import ENERGIES
-from rodsim.integrators import make_integrator
+from rodsim.forces.elastic import ENERGIES
+from rodsim.integrators.make import make_integrator
 from rodsim.scene.build import build_scene
 from rodsim.scene.shapes import rotation_matrix
 from rodsim.scene.system import RodSystem

@@ -13,9 +13,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rodsim.compiled.rotations import rotate
-from rodsim.integrators import RK4
+from rodsim.flows.fluid import fluid_parts
+from rodsim.forces.elastic import elastic_part, strain_twist
+from rodsim.integrators.rk4 import RK4
+from rodsim.nodes import lay_out
+from rodsim.scene.build import with_parts
 from rodsim.scene.shapes import rotation_matrix
-from rodsim.scene.state import Rods, Scene, State, StrainTwist
+from rodsim.scene.state import Scene, State
 from rodsim.scene.system import RodSystem
 
 ROUNDINGS = 100
@@ -40,15 +44,12 @@ def scenes(draw):
     """One to three bent, sheared, stretched rods, open or closed, and some markers."""
     kinds = draw(st.lists(st.tuples(st.integers(3, 6), st.booleans()), min_size=1, max_size=3))
     random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
-    count, closed = np.array([kind[0] for kind in kinds]), np.array([kind[1] for kind in kinds])
-    rods = Rods(
-        names=tuple("abc"[: len(kinds)]),
-        first=np.concatenate([[0], np.cumsum(count)[:-1]]),
-        count=count,
-        closed=closed,
-        spacing=random.uniform(0.05, 0.3, len(kinds)),
-        moduli=random.uniform(0.3, 3.0, (6, len(kinds))) * np.repeat([[3e-3], [0.7]], 3, axis=0),
+    size = np.repeat([3e-3, 0.7], 3)
+    rods = lay_out(
+        (name, *kind, random.uniform(0.05, 0.3), size * random.uniform(0.3, 3.0, 6))
+        for name, kind in zip("abc", kinds, strict=False)
     )
+    count = rods.count
     ds = np.repeat(rods.spacing, count)
     walk = random.normal(size=(3, rods.points)) * ds
     position = np.concatenate(
@@ -59,9 +60,8 @@ def scenes(draw):
     director = np.repeat(start[:, :, None], rods.points, axis=2)
     rotate(theta, director.copy(), director)
     segments = [random.normal(size=(3, n)) for n in rods.segments]
-    return Scene(
+    scene = Scene(
         rods=rods,
-        strain_twist=twist(rods, segments),
         epsilon=float(draw(st.floats(1.0, 5.0)) * rods.spacing.min()),
         viscosity=1.3e-6,
         blob="algebraic7",
@@ -69,15 +69,19 @@ def scenes(draw):
         density=None,
         tracer_groups={"markers": 3},
         initial=at_start(position, director, random.normal(size=(3, 3))),
-    ), segments
+    )
+    return acting(scene, segments), segments
 
 
 def at_start(*arrays):
     return State(0.0, *map(np.ascontiguousarray, arrays))
 
 
-def twist(rods, segments):
-    return StrainTwist(rods, [[Values(row, 31.0) for row in rows] for rows in segments])
+def acting(scene, segments):
+    """The scene with that strain twist, and its fluid."""
+    entries = [[Values(row, 31.0) for row in rows] for rows in segments]
+    twisted = elastic_part(strain_twist(entries, scene.rods))
+    return with_parts(scene, [twisted, *fluid_parts(scene)])
 
 
 def fields_of(scene):
@@ -157,11 +161,8 @@ def test_points_in_the_other_order_do_the_same(made):
         rows = rows[:, ::-1] * [[-1.0], [1.0], [1.0]]
         turned.append(np.roll(rows, -1, axis=1) if closed else rows)  # the last joins both ends
     director = state.director[:, :, order] * TURNED_ROUND[:, None, None]
-    image = replace(
-        scene,
-        strain_twist=twist(rods, turned),
-        initial=at_start(state.position[:, order], director, state.tracer),
-    )
+    image = replace(scene, initial=at_start(state.position[:, order], director, state.tracer))
+    image = acting(image, turned)
 
     def back(name, array):
         if name == "tracer":
@@ -179,20 +180,14 @@ def test_rods_in_another_order_do_the_same(made, random):
     rods, state = scene.rods, scene.initial
     turn = random.sample(range(len(rods.names)), len(rods.names))
     order = np.concatenate([np.arange(rods.count[r]) + rods.first[r] for r in turn])
-    count = rods.count[turn]
-    swapped = Rods(
-        names=tuple(rods.names[r] for r in turn),
-        first=np.concatenate([[0], np.cumsum(count)[:-1]]),
-        count=count,
-        closed=rods.closed[turn],
-        spacing=rods.spacing[turn],
-        moduli=np.ascontiguousarray(rods.moduli[:, turn]),
+    swapped = lay_out(
+        (rods[r].name, rods[r].count, rods[r].closed, rods[r].spacing, rods[r].moduli) for r in turn
     )
     image = replace(
         scene,
         rods=swapped,
-        strain_twist=twist(swapped, [segments[r] for r in turn]),
         initial=at_start(state.position[:, order], state.director[:, :, order], state.tracer),
     )
+    image = acting(image, [segments[r] for r in turn])
     place = np.argsort(order)
     compare(scene, image, lambda name, a: a if name == "tracer" else a[..., place])

@@ -6,7 +6,7 @@ import theory
 from scenes import system_of
 
 from rodsim.analysis.swimming import swimming_velocity
-from rodsim.integrators import make_integrator
+from rodsim.integrators.make import make_integrator
 
 WAVELENGTH, EPSILON, AMPLITUDE, FREQUENCY = 5.0, 0.4667, 0.04, 200.0
 K = 2 * np.pi / WAVELENGTH

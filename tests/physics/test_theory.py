@@ -6,7 +6,7 @@ import theory
 from scenes import system_of
 
 from rodsim.flows.velocity import velocity
-from rodsim.integrators import make_integrator
+from rodsim.integrators.make import make_integrator
 
 MU, EPSILON = 1.7e-6, 0.33  # of the long rod
 

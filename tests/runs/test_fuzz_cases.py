@@ -16,7 +16,7 @@ from scenes import CONFIGS
 
 from rodsim.case import TEMPLATES, case_from_mapping, load_case, template
 from rodsim.errors import CaseError, FileError, StepFailure
-from rodsim.integrators import make_integrator
+from rodsim.integrators.make import make_integrator
 from rodsim.run.watch import Watch
 from rodsim.scene.build import build_scene
 from rodsim.scene.system import RodSystem

@@ -2,11 +2,14 @@
 
 import math
 import pickle
+import random
+import re
 
 import numpy as np
 import pytest
 
 from rodsim.case import Expression, ExpressionError
+from rodsim.case.expressions import evaluate, names_in
 
 S = np.array([0.0, 0.3, 1.7])
 T = 0.4
@@ -31,13 +34,17 @@ P = {"k": 1.25, "b": 0.6, "sigma": 40.0}
         ("tanh(s)*tan(s) + cos(s) + abs(-s)",
          lambda s: math.tanh(s) * math.tan(s) + math.cos(s) + s),
         ("1\n+ s", lambda s: 1 + s),
-        ("arcsin(s/2)*arccos(-s/3)", lambda s: math.asin(s / 2) * math.acos(-s / 3)),
-        ("arctan(s - 2) - arctan2(-s, t - 1)",
-         lambda s: math.atan(s - 2) - math.atan2(-s, -0.6)),
-        ("sinh(s) / cosh(2*s)", lambda s: math.sinh(s) / math.cosh(2 * s)),
-        ("sign(s - 0.3) + 10*floor(-s)",
-         lambda s: math.copysign(s != 0.3, s - 0.3) + 10 * math.floor(-s)),
-        ("7*heaviside(s - 0.3)", lambda s: 3.5 if s == 0.3 else 7.0 * (s > 0.3)),
+        ("sin (s) - -+-s", lambda s: math.sin(s) - s),
+        ("2**3**s*2 - 8/2/2", lambda s: 2 * 2 ** (3**s) - 2),
+        ("s - 1 - t < s*t + 1 <= 3", lambda s: float(s - 1.4 < 0.4 * s + 1 <= 3)),
+        ("(s < t) < 1", lambda s: float(float(s < 0.4) < 1)),
+        ("0x10 + 1_0 + .5 + 2. + 1e-1*s", lambda s: 28.5 + 0.1 * s),
+        ("arcsin(s/2) + arccos(s/3) + arctan(s) + arctan2(s, -t)",
+         lambda s: math.asin(s / 2) + math.acos(s / 3) + math.atan(s) + math.atan2(s, -0.4)),
+        ("sinh(s) - cosh(s) + floor(-s) + 3*sign(s - 0.3)",
+         lambda s: -math.exp(-s) + math.floor(-s) + 3 * np.sign(s - 0.3)),
+        ("heaviside(s - 0.3) + heaviside(s - 0.3, 7)",
+         lambda s: {0.0: 0, 0.3: 7.5, 1.7: 2}[float(s)]),
     ],
 )  # fmt: skip
 def test_value(text, value):
@@ -129,9 +136,23 @@ def test_invalid_is_nan_without_a_warning():
         ("ｓ", "not allowed"),
         ("9" * 900, "too large"),
         ("-" * 900 + "1", "nested"),
-        ("(" * 400 + "1" + ")" * 400, "not an expression"),
-        ("(" * 1_000_000, "at most 1000"),
-        ("+".join(["s"] * 400), "nested deeper than 100"),
+        ("(" * 400 + "1" + ")" * 400, "nested deeper than 100"),
+        ("2**" * 400 + "s", "nested deeper than 100"),
+        ("sin(" * 400 + "s", "nested deeper than 100"),
+        ("(" * 1_000_000, "at most 20000"),
+        ("+".join(["s"] * 10_001), "20001 characters long"),
+        ("0x" + "f" * 900, "too large"),
+        ("0x", "not a number"),
+        ("2s", "'*'"),
+        ("(s + 1", "a '(' is not closed"),
+        ("s + 1)", "a ')' without its '('"),
+        ("(1, 2)", "a comma"),
+        ("min(1, )", "something is missing before a ')'"),
+        ("min(, 1)", "nothing stands before a comma"),
+        ("* s", "nothing stands before '*'"),
+        ("sin()", "sin takes 1 argument, not 0"),
+        ("()", "something is missing"),
+        ("heaviside(s, t, 1)", "heaviside takes 1 or 2 arguments, not 3"),
     ],
 )
 def test_refused(text, words):
@@ -140,8 +161,49 @@ def test_refused(text, words):
     assert words in str(caught.value)
 
 
-def test_a_long_sum_is_accepted():
-    assert Expression("+".join(["s"] * 90))(S, 0.0) == pytest.approx(90 * S)
+@pytest.mark.parametrize(("sign", "value"), [("+", 10_000 * S), ("-", -9_998 * S)])
+def test_a_chain_may_be_as_long_as_a_text(sign, value):
+    assert Expression(sign.join(["s"] * 10_000))(S, 0.0) == pytest.approx(value, rel=1e-10)
+    assert Expression("*".join(["(1 + s/9)"] * 2_000))(1e-3, 0.0) == pytest.approx(
+        (1 + 1e-3 / 9) ** 2_000, rel=1e-11
+    )
+
+
+def test_a_fourier_sum_is_what_numpy_makes_of_it():
+    """A measured wave of curvature as people bring it: 60 terms, 2 700 characters, in one text."""
+    rng = np.random.default_rng(3)
+    a, k, sigma = rng.normal(size=60), rng.uniform(0.1, 9, 60), rng.uniform(1, 90, 60)
+    terms = zip(a.round(9), k.round(9), sigma.round(6), strict=True)
+    text = " + ".join(f"{x}*sin({y}*s + {z}*t)" for x, y, z in terms)
+    assert 2_000 < len(text) < 20_000
+    s, t = np.linspace(0, 4, 7), np.array([[0.0], [0.13]])
+    phases = k.round(9) * s[:, None] + sigma.round(6) * t[..., None]
+    expected = (a.round(9) * np.sin(phases)).sum(axis=-1)
+    assert Expression(text)(s, t) == pytest.approx(expected, abs=1e-12)
+
+
+def test_a_name_of_a_function_may_be_that_of_a_parameter():
+    """Functions that came later take no name away from the files there are."""
+    assert Expression("floor*floor(floor)", {"floor": 2.5})(0.0, 0.0) == 5.0
+
+
+def test_other_variables():
+    flow = Expression("gamma*z - x*t", {"gamma": 3.5}, ("x", "y", "z", "t"))
+    assert flow(2.0, 9.0, np.array([1.0, 2.0]), 0.5).tolist() == [2.5, 6.0]
+    assert flow.uses == {"x", "z", "t"}
+    assert flow != Expression("gamma*z - x*t", {"gamma": 3.5}, ("x", "z", "y", "t"))
+    with pytest.raises(ExpressionError, match="unknown name 's': it can use x, y, z, t, pi or"):
+        Expression("s", {"gamma": 3.5}, ("x", "y", "z", "t"))
+    with pytest.raises(ExpressionError, match="'x' is the variable of this expression and a para"):
+        Expression("x", {"x": 3.5}, ("x", "y"))
+    assert Expression("x*s", {"x": 3.5})(2.0, 0.0) == 7.0
+
+
+def test_numbers_of_parameters():
+    assert evaluate("2*pi/sigma", {"sigma": 40.0}) == 2 * math.pi / 40
+    assert names_in("k*sin(k*s + sigma*t) + pi") == {"k", "s", "sigma", "t"}
+    with pytest.raises(ExpressionError, match="unknown name 't': it can use pi or sigma"):
+        evaluate("sigma*t", {"sigma": 40.0})
 
 
 def test_equal_by_text_and_parameters():
@@ -163,3 +225,28 @@ def test_parameters_are_bound_at_construction():
     expression = Expression("k*s", values)
     values["k"] = 9.0
     assert expression(S, 0.0) == pytest.approx(2.5 * S)
+
+
+def test_precedence_is_that_of_python():
+    """Random texts of operators and brackets, beside Python's own parser on NumPy's numbers."""
+    rng = random.Random(5)
+    found = 0
+    for _ in range(2_000):
+        words = []
+        for _ in range(rng.randint(1, 9)):
+            words += [rng.choice(("", "", "-", "+", "(")) + rng.choice(("s", "t", "2", "0.5"))]
+            words += [rng.choice((" + ", "-", "*", "/", "**", " % ", "<", ") * ", ")**"))]
+        text = "".join(words[:-1])
+        text += ")" * (text.count("(") - text.count(")"))
+        try:
+            compile(text, "text", "eval")
+        except SyntaxError:
+            with pytest.raises(ExpressionError):
+                Expression(text)
+            continue
+        with np.errstate(all="ignore"):
+            numbers = re.sub(r"\b(2|0\.5)\b", r"f(\1)", text)
+            expected = eval(numbers, {"s": np.float64(0.3), "t": np.float64(0.4), "f": np.float64})
+        found += 1
+        assert Expression(text)(0.3, 0.4) == pytest.approx(float(expected), nan_ok=True), text
+    assert found > 500

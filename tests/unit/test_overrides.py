@@ -1,5 +1,7 @@
 """``--set key=value``: what can be changed, and what is refused."""
 
+import math
+
 import pytest
 
 from rodsim.case import load_case
@@ -34,6 +36,20 @@ def change(tmp_path):
         (["output.fields=[position, force]"], lambda c: c.output.fields, ("position", "force")),
         (["units.length=mm"], lambda c: c.units.length, "mm"),
         (["title=a = b"], lambda c: c.title, "a = b"),
+        (["parameters.d=k/3", "time.end=4*d"], lambda c: c.time.end, 2.0),
+        (["parameters.phi=pi"], lambda c: c.parameters, {"k": 1.5, "phi": math.pi}),
+        (
+            ["rods.tail.parameters.k=2*k0", "parameters.k0=0.4"],
+            lambda c: c.rods["tail"].strain_twist[0].parameters,
+            {"k": 0.8, "k0": 0.4},
+        ),
+        (["time.end='0.7'"], lambda c: c.time.end, 0.7),
+        (["rods.tail.shape.points=0.3/0.1 + 40*k"], lambda c: c.rods["tail"].shape.points, 63),
+        (
+            ["rods.tail.moduli.bending=[2*k, k**2]"],
+            lambda c: c.rods["tail"].moduli.values[:2],
+            (3.0, 2.25),
+        ),
         (["parameters.k=2.5"], lambda c: c.rods["tail"].strain_twist[0].parameters, {"k": 2.5}),
         (["rods.tail.strain_twist.2=0.4"], lambda c: c.rods["tail"].strain_twist[2], 0.4),
         (["rods.tail.moduli.bending.1=0.5"], lambda c: c.rods["tail"].moduli.values[1], 0.5),
@@ -68,7 +84,9 @@ def test_changes(change, overrides, read, value):
         ("tiem.end=3", "tiem.end", "did you mean 'time'?"),
         ("rods.tial.shape.points=3", "rods.tial.shape.points", "did you mean 'tail'?"),
         ("rods.new={}", "rods.new", "rods has no 'new'"),
-        ("parameters.b=3", "parameters.b", "parameters has no 'b'"),
+        ("parameters.2b=3", "parameters.2b", "letters, digits and _"),
+        ("parameters.b=3*c", "parameters.b", "unknown name 'c'"),
+        ("parameters.sin=3", "parameters.sin", "already has a meaning"),
         ("tracers.m=[[1, 2, 3]]", "tracers.m", "tracers has no 'm'"),
         ("rods.tail.shape.radius=1", "rods.tail.shape.radius", "unknown key"),
         ("rods.tail.strain_twist.3=1", "rods.tail.strain_twist.3", "entries 0 to 2"),
@@ -77,7 +95,10 @@ def test_changes(change, overrides, read, value):
         ("time.end=[1", "time.end", "not valid YAML"),
         ("time.end={a: 1, a: 2}", "time.end.a", "duplicate key"),
         ("time.end=-1", "time.end", "must be > 0"),
-        ("time.end='1'", "time.end", "without quotes"),
+        ("time.end=long", "time.end", "there is no parameter 'long': must be a number"),
+        ("time.end=3*x", "time.end", "unknown name 'x': it can use pi or k"),
+        ("time.end=k - 2", "time.end", "must be > 0"),
+        ("rods.tail.shape.points=50/3", "rods.tail.shape.points", "whole number, and is 16.66"),
         ("time=null", "time", "missing"),
         ("time.end=\udc80", "time.end", "U+DC80"),
     ],
@@ -94,7 +115,7 @@ def test_problems_of_options_and_of_the_file_come_together(change):
     with pytest.raises(CaseError) as caught:
         change("time.end=x", "fluid.blob=cube", "nothing", "rods.tail.moduli.shear=0")
     assert [p.key for p in caught.value.problems] == [
-        "nothing", "fluid.blob", "rods.tail.moduli.shear", "time.end"
+        "nothing", "time.end", "fluid.blob", "rods.tail.moduli.shear"
     ]  # fmt: skip
 
 

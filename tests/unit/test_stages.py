@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scenes import system_of
 
+from rodsim.compiled import row as row_module
 from rodsim.integrators.rkc import RKC, coefficients
-from rodsim.scene import state as state_module
 
 DRIVEN = "rods.ring.strain_twist=['1.2*cos(40000*t + s)', 0, '0.3*t*1e4']"
 SCENE = ("closed_ring_low_twist", "rods.ring.shape.points=14", "time.end=1e-4",
@@ -56,17 +56,16 @@ def test_stages_are_those_of_the_method(overrides):
 
 def test_strain_twist_in_blocks_gives_the_same_bits(monkeypatch):
     whole = one_step((DRIVEN,))[3]
-    monkeypatch.setattr(state_module, "LARGEST_BLOCK", 3 * 3 * 14)
+    monkeypatch.setattr(row_module, "LARGEST_BLOCK", 3 * 3 * 14)
     assert np.array_equal(one_step((DRIVEN,))[3], whole)
 
 
 def test_strain_twist_at_several_times_is_that_of_each():
     _, system = system_of(*SCENE, DRIVEN)
-    strain_twist, times = system.scene.strain_twist, np.array([1e-5, 2e-5, 4e-5])
-    together = strain_twist.at(times)
-    assert together.shape == (3, 3, 14)
+    row, times = system.scene.parts[0].row, np.array([1e-5, 2e-5, 4e-5])
+    together = row.at(times).reshape(3, 3, 14)
     for omega, t in zip(together, times, strict=True):
-        assert np.array_equal(omega, strain_twist(t))
+        assert np.array_equal(omega.ravel(), row(t))
     s = (np.arange(14) + 0.5) * 2 * np.pi * 2.5 / 14
     assert together[1, 0] == pytest.approx(1.2 * np.cos(0.8 + s), rel=1e-13)
     assert together[2, 2] == pytest.approx(0.12, rel=1e-13)
@@ -75,8 +74,8 @@ def test_strain_twist_at_several_times_is_that_of_each():
 def test_travel_of_a_wave_is_its_phase_less_the_longest_part():
     """Over parts (2 j + 1)/36 of a step, j = 0 ... 5; the last is left out: 25/36 of the phase."""
     _, system = system_of("flagellum", "parameters.sigma=300")
-    travel = system.scene.strain_twist.travel
+    travel = system.scene.parts.travel
     for phase in (1e-3, 0.05):  # the chord of an arc is shorter by phase^2/24
         assert travel(1.7e-3, phase / 300.0) == pytest.approx(25.0 / 36.0 * phase, rel=1e-3)
     _, steady = system_of(*SCENE)
-    assert steady.scene.strain_twist.travel(1.7e-3, 0.2) == 0.0
+    assert steady.scene.parts.travel(1.7e-3, 0.2) == 0.0

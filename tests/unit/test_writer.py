@@ -13,7 +13,8 @@ from outputs import CASE, POINTS, RODS, TIMES, TRACERS, UNITS, create, frame, wr
 
 from rodsim.compiled.settings import machine
 from rodsim.errors import FileError
-from rodsim.output import RodRecord, build, open_trajectory
+from rodsim.nodes import Rod, Rods
+from rodsim.output import build, open_trajectory
 from rodsim.output.layout import FIELDS
 
 
@@ -239,7 +240,7 @@ def test_hdf5_never_meets_a_full_disk(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "rods", [RODS, [RodRecord(f"rod{i}", 2 * i, 2, False, 0.5, (2.5,) * 6) for i in range(90)]]
+    "rods", [RODS, Rods(Rod(f"rod{i}", 2 * i, 2, False, 0.5, (2.5,) * 6) for i in range(90))]
 )
 @pytest.mark.parametrize("frames", [1, 5000])
 def test_what_is_reserved_is_enough(tmp_path, rods, frames):
@@ -254,7 +255,7 @@ def test_what_is_reserved_is_enough(tmp_path, rods, frames):
 
 
 def test_an_absurd_size_is_refused_at_once(tmp_path):
-    rods = [RodRecord("endless", 0, 10**15, False, 0.5, (2.5,) * 6)]
+    rods = Rods([Rod("endless", 0, 10**15, False, 0.5, (2.5,) * 6)])
     with pytest.raises(FileError, match=r"needs [\d.e+]+ PB"):
         create(tmp_path / "out.h5", rods=rods)
     assert not list(tmp_path.iterdir())

@@ -1,0 +1,70 @@
+"""The kinds of parts, in the order in which they act: one line each.
+
+A kind is a file in ``forces/`` or ``flows/`` with its words in the case file, its numbers, its
+kernel, its energy or work. ``RODSIM_PARTS``, names of modules with commas between them, adds kinds
+of your own.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib import import_module
+from typing import Any
+
+KINDS = (
+    "rodsim.forces.elastic",
+    "rodsim.forces.loads",
+    "rodsim.forces.tethers",
+    "rodsim.flows.fluid",
+    "rodsim.flows.background",
+)
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of part.
+
+    build : called with (case, scene), returns its parts in that scene, none where the case does not
+    ask for it. Raises CaseError.
+    word : its key in the case file, in the section ``where`` (Case, Fluid or Rod). words : the type
+    of what stands there. dimension, about : of the schema.
+    check : called with a case, sections of which may be None, yields (path, reason) of what is
+    wrong across sections.
+    """
+
+    build: Callable
+    word: str = ""
+    where: str = ""
+    words: Any = None
+    dimension: str = ""
+    about: str = ""
+    check: Callable | None = None
+
+
+@lru_cache(maxsize=1)
+def kinds() -> tuple[Kind, ...]:
+    """Return all kinds, the user's own last."""
+    own = [name.strip() for name in os.environ.get("RODSIM_PARTS", "").split(",")]
+    return tuple(import_module(name).KIND for name in (*KINDS, *filter(None, own)))
+
+
+def with_words(model: type) -> type:
+    """Return a model of the case file with the words of all kinds that belong there.
+
+    A word that is left out is None, and leaves the resolved case as it would be without the kind.
+    """
+    from pydantic import Field, create_model
+
+    fields = {
+        kind.word: (
+            kind.words | None,
+            Field(None, description=kind.about, json_schema_extra={"dimension": kind.dimension}),
+        )
+        for kind in kinds()
+        if kind.where == model.__name__
+    }
+    names = {"__module__": model.__module__, "__doc__": model.__doc__}
+    return create_model(model.__name__, __base__=model, **names, **fields)

@@ -1,0 +1,50 @@
+"""Who hears of a run: one object, asked and told as it goes on. The default is silent."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, field
+
+
+@dataclass
+class Summary:
+    """How a run ended and what it cost.
+
+    moved : where the output that had its name has gone, or None. runtime : the file's ``/runtime``.
+    """
+
+    status: str = "running"
+    frames: int = 0
+    moved: str | None = None
+    runtime: dict = field(default_factory=dict)
+
+
+class Listener:
+    """Hears of a run and shows nothing but warnings. Override what you want to hear."""
+
+    def compile(self, scene) -> float:
+        """Compile what the scene needs, ahead of the run; return the seconds that it took.
+
+        What is not compiled by then, the run itself compiles.
+        """
+        return 0.0
+
+    def warn(self, text: str) -> None:
+        """Hear what looks wrong but does not stop the run."""
+        warnings.warn(text, stacklevel=2)
+
+    def limits(self, limits) -> None:
+        """Hear the ``integrators.limits.Limits`` of the scene before the first step."""
+
+    def update(self, fraction: float, note: str) -> None:
+        """Hear after each step which fraction of the run is done."""
+
+    def stop(self) -> str:
+        """Return, after each step, why the run is to stop there, or an empty text."""
+        return ""
+
+    def ended(self, summary: Summary) -> None:
+        """Hear how the run has ended, however it has: also before an error goes up."""
+
+
+SILENT = Listener()

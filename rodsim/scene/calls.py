@@ -1,0 +1,65 @@
+"""A list of parts as the compiled loop takes it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rodsim.compiled.kernels import address_of
+from rodsim.compiled.parts import FORCE, PartList
+
+ADDRESS, DRIVEN, ROW, ROW_END, FIXED, FIXED_END, ACCOUNT, IS_FLOW = range(8)  # columns
+
+
+class Calls:
+    """A list of parts as the compiled loop takes it: one row of ``table`` for each.
+
+    ``numbers`` : all fixed numbers and steady rows; driven rows come by ``rows_at``.
+    """
+
+    def __init__(self, parts: PartList, counted=lambda part: part.works):
+        """``counted``: tells which parts have an account of their own."""
+        self._driven = [part for part in parts if part.row.driven]
+        self.table = np.zeros((len(parts), 8), dtype=np.int64)
+        blocks, places = [np.zeros(0)], _Places()
+        driven = _Places()
+        accounts = iter(range(len(parts)))
+        for line, part in zip(self.table, parts, strict=True):
+            line[ADDRESS], line[IS_FLOW] = address_of(part.kernel), part.side != FORCE
+            line[FIXED : FIXED_END + 1] = places.take(part.fixed.size)
+            blocks.append(part.fixed)
+            line[DRIVEN] = part.row.driven
+            if part.row.driven:
+                line[ROW : ROW_END + 1] = driven.take(part.row.size)
+            else:
+                line[ROW : ROW_END + 1] = places.take(part.row.size)
+                blocks.append(part.row(0.0))
+            line[ACCOUNT] = next(accounts) if counted(part) else -1
+        self.numbers = np.concatenate(blocks)
+        self.accounts = int((self.table[:, ACCOUNT] >= 0).sum())
+
+    @property
+    def driven(self) -> bool:
+        """Whether rows depend on time."""
+        return bool(self._driven)
+
+    def rows_at(self, times: np.ndarray) -> np.ndarray:
+        """Return the driven rows side by side (T, n) at the first T of the times; else (1, 0)."""
+        if not self._driven:
+            return NO_ROWS
+        blocks = [part.row.at(times) for part in self._driven]
+        fewest = min(map(len, blocks))
+        return blocks[0] if len(blocks) == 1 else np.hstack([block[:fewest] for block in blocks])
+
+
+class _Places:
+    """Gives out places one after another."""
+
+    def __init__(self):
+        self.end = 0
+
+    def take(self, count):
+        begin, self.end = self.end, self.end + count
+        return begin, self.end
+
+
+NO_ROWS = np.zeros((1, 0))

@@ -1,0 +1,16 @@
+"""Which observables a scene has beyond those of every scene."""
+
+from rodsim.compiled.parts import FORCE
+from rodsim.output import layout
+from rodsim.scene.state import Scene
+
+
+def extra_series(scene: Scene) -> tuple:
+    """Return the observables that not every scene has: (name, shape, dimension) of each."""
+    series = [entry for part in scene.parts for entry in part.series]
+    if any(part.external for part in scene.parts.of(FORCE)):
+        series += [("external_force", (3,), layout.FORCE), ("external_torque", (3,), layout.ENERGY)]
+    if scene.parts.external:
+        names = [*(f"{name}_work" for name in scene.parts.working), "external_work", "dissipated"]
+        series += [(name, (), layout.ENERGY) for name in names]
+    return tuple(series)
