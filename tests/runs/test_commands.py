@@ -278,7 +278,7 @@ def test_version():
         (("resume", RING), "not an HDF5 file, but a case? First rodsim run"),
         (("info", "text.h5"), "not an HDF5 file"),
         (("run", RING, "-o", "no/such/folder/out.h5"), "no folder"),
-        (("run", RING, "-q", "-o", "a" * 242 + ".h5"), ".h5: cannot be written: its name is too "),
+        (("run", RING, "-q", "-o", "a" * 247 + ".h5"), ".h5: cannot be written: its name is too "),
     ],
 )
 def test_files_that_are_no_use_end_with_code_4_in_one_line(arguments, words, here):
