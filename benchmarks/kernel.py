@@ -1,4 +1,4 @@
-"""Nanoseconds per pair of the fused sum, by number of points, threads, blob and variant."""
+"""Nanoseconds per pair of the fused sums, by number of points, threads, blob and variant."""
 
 import click
 import numpy as np
@@ -30,13 +30,24 @@ COLUMNS = {
     "no_w_ratio": "without w / with w",
     "speedup": "speed-up, 3-D",
 }
+WALL_COLUMNS = {
+    "blob": "blob",
+    "points": "M",
+    "threads": "threads",
+    "wall_spatial": "wall, 3-D, ns/pair",
+    "wall_no_w": "without w, ns/pair",
+    "wall_planar": "planar, ns/pair",
+    "spatial_over_free": "wall / free, 3-D",
+    "no_w_over_free": "wall / free, without w",
+    "planar_over_free": "wall / free, planar",
+}
 
 
 @benchmark(full=21, short=5)
 @threads_option
 @click.option("--points", multiple=True, type=click.IntRange(2), help="M; again for more sizes.")
 def main(quick, repeats, threads, points):
-    """Measure the sums (32), (33) alone: ns per pair of points.
+    """Measure the sums (32), (33) alone, in free space and above a wall: ns per pair of points.
 
     All variants run in rounds in one process, and ratios are taken within a round, so that what
     disturbs a round disturbs both sides of its ratios.
@@ -48,34 +59,38 @@ def main(quick, repeats, threads, points):
         for blob in ("algebraic7", "algebraic9")
         for size in sizes
         for count in counts
-        for variant in VARIANTS
+        for variant in (*VARIANTS, *(f"wall_{name}" for name in VARIANTS))
     ]
     timers = {key: Timed(call(*key)) for key in keys}
     times = {k: np.array(v) for k, v in interleaved(timers, repeats, "kernels").items()}
-    table = Table(
-        "The fused sum, per pair of points",
-        COLUMNS,
-        [row(times, *group) for group in dict.fromkeys(key[:3] for key in keys)],
-    )
-    return [table], lambda *axes: draw(table.rows, *axes)
+    groups = dict.fromkeys(key[:3] for key in keys)
+    rows = [row(times, *group) for group in groups]
+    tables = [
+        Table("The fused sum, per pair of points", COLUMNS, rows),
+        Table("Above a wall", WALL_COLUMNS, [wall_row(times, *group) for group in groups]),
+    ]
+    return tables, lambda *axes: draw(rows, *axes)
 
 
 def call(blob, size, threads, variant):
     """Return a function that evaluates one sum over ``size`` points of a ring."""
     import numba
 
-    from rodsim.flows.velocity import BLOBS, velocity_kernel
+    from rodsim.flows import free, wall
+    from rodsim.flows.blobs import BLOBS
 
+    sums, height = (wall, (-3.0,)) if variant.startswith("wall_") else (free, ())
+    planar, angular = VARIANTS[variant.removeprefix("wall_")]
     angle = np.arange(size) * (2.0 * np.pi / size)
     points = 2.5 * np.stack([0.0 * angle, np.cos(angle), np.sin(angle)])
     loads = np.random.default_rng(1).standard_normal((6, size))
     epsilon = 4.0 * 2.5 * 2.0 * np.pi / size
-    kernel = velocity_kernel(BLOBS[blob], *VARIANTS[variant])
-    out = np.empty((6 if VARIANTS[variant][1] else 3, size))
+    kernel = sums.velocity_kernel(BLOBS[blob], planar, angular)
+    out = np.zeros((6 if angular else 3, size))
 
     def evaluate():
         numba.set_num_threads(threads)
-        kernel(points, points, loads, epsilon, 1e-6, out)
+        kernel(points, points, loads, epsilon, 1e-6, *height, out)
 
     return evaluate
 
@@ -92,6 +107,16 @@ def row(times, blob, size, threads):
         "no_w_ratio": Spread.of(seconds["no_w"] / seconds["spatial"]),
         "speedup": Spread.of(times[blob, size, 1, "spatial"] / seconds["spatial"]),
     }
+
+
+def wall_row(times, blob, size, threads):
+    """Return one row of the table of sums above a wall, with ratios to those in free space."""
+    row = {"blob": blob, "points": size, "threads": threads}
+    for name in VARIANTS:
+        free, wall = (times[blob, size, threads, prefix + name] for prefix in ("", "wall_"))
+        row[f"wall_{name}"] = Spread.of(wall, 1e9 / size**2)
+        row[f"{name}_over_free"] = Spread.of(wall / free)
+    return row
 
 
 def draw(rows, left, right):

@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from rodsim.case import Case, case_schema, template
+from rodsim.case import Case, template
 from rodsim.case.expressions import FUNCTIONS
 from rodsim.case.fields import ANGLES, DIMENSIONS
 from rodsim.case.model import Units
+from rodsim.case.schema import model_schema
 from rodsim.units import unit_text
 
 PAGE = Path(__file__).with_name("case-file.md")
@@ -24,6 +25,8 @@ tracers=null` to take a key out).
 * Units are those of the default names, um, g and s. With other names in `units` the numbers mean
   those: nothing is converted.
 * `1e-3` is a number, `no` is text, a key that is unknown or given twice is an error.
+* Any number may be an [expression](numbers.md) of the parameters: `end: 5*period`.
+* A rod that is [like another](numbers.md#rods-like-others) need not say what it has from there.
 * A key left empty, or set to `null`, takes its default.
 * Numbers that must be > 0 must also lie between 1e-200 and 1e200; nothing has more than 10⁷ points.
 """
@@ -31,7 +34,8 @@ SECTIONS = {
     "Case": "Top level",
     "Units": "units",
     "Fluid": "fluid",
-    "Spacings": "fluid.epsilon as a mapping",
+    "Spacings": "fluid.epsilon with spacings",
+    "Radius": "fluid.epsilon with radius",
     "Rod": "rods.NAME",
     "Moduli": "rods.NAME.moduli",
     "Straight": "rods.NAME.shape, kind: straight",
@@ -47,12 +51,14 @@ SECTIONS = {
 LAST = ("rotate", "origin")  # keys that all shapes share
 TAIL = """## Expressions
 
-The entries of `strain_twist` are numbers, or expressions in the arc length `s`, the time `t`, `pi`
-and the names in `parameters`, with `+ - * / ** %`, the comparisons `< <= > >=` and the functions
-{functions};
-`where(condition, a, b)` chooses, `arctan2(y, x)` is an angle, `heaviside(0)` is 1/2. The first
-point of a rod is at s = 0; strain twist is taken at the middle of each segment. Nothing in a case
-file can run code.
+Any number may be an expression of `pi` and the names in `parameters`, the entries of `strain_twist`
+of the arc length `s` and the time `t` as well, with `+ - * / ** %`, the comparisons `< <= > >=` and
+the functions {functions};
+`where(condition, a, b)` chooses, `arctan2(y, x)` is an angle, `heaviside(0)` is 1/2; more in
+[numbers](numbers.md).
+
+The first point of a rod is at s = 0; strain twist is taken at the
+middle of each segment. Nothing in a case file can run code.
 
 abs(Omega) times the spacing must be at most 2 (no discrete rod has more strain twist at rest);
 above 1 there is a warning.
@@ -68,7 +74,7 @@ What `rodsim new ring` writes:
 
 def page() -> str:
     """Return the text of the page."""
-    schema = case_schema()
+    schema = model_schema()
     models = {
         "Case": {**schema, "description": Case.__doc__.split("\n")[0]},
         **schema["definitions"],

@@ -1,23 +1,62 @@
-"""Units at the skin: names on values, and conversion to kT. Kernels see plain numbers."""
+"""Units at the skin: names on values, and conversion to SI. Kernels see plain numbers."""
 
 from rodsim.errors import UsageError
 
 BOLTZMANN = 1.380649e-23  # J/K, exact
-SI = {
-    "m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9,
-    "kg": 1.0, "g": 1e-3, "mg": 1e-6, "ug": 1e-9, "µg": 1e-9, "ng": 1e-12, "pg": 1e-15,
-    "s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0,
+_PREFIXES = {
+    "k": 1e3, "": 1.0, "c": 1e-2, "m": 1e-3, "u": 1e-6, "\u00b5": 1e-6, "\u03bc": 1e-6, "n": 1e-9,
+    "p": 1e-12, "f": 1e-15, "a": 1e-18,
 }  # fmt: skip
+
+
+def _scaled(unit, prefixes, size=1.0):
+    return {prefix + unit: _PREFIXES[prefix] * size for prefix in ("", *prefixes)}
+
+
+_SMALL = ("m", "u", "\u00b5", "\u03bc", "n", "p", "f")
+SI = {  # of each kind: the names that are known, and their size in m, kg, s, N
+    "length": {
+        **_scaled("m", ("c", *_SMALL)),
+        **dict.fromkeys(("\u00c5", "\u212b", "A", "Angstrom", "angstrom"), 1e-10),
+    },
+    "mass": {**_scaled("g", ("k", *_SMALL, "a"), 1e-3), "Da": 1.66053906892e-27},
+    "time": {**_scaled("s", _SMALL), "min": 60.0, "h": 3600.0},
+    "force": {**_scaled("N", _SMALL), "dyn": 1e-5},
+}
+
+
+def mass_name(units: dict) -> str:
+    """Return the name of the unit of mass; where force is named instead, force length^-1 time^2."""
+    if units.get("force"):
+        return f"{units['force']} {units['length']}^-1 {units['time']}^2"
+    return units["mass"]
 
 
 def unit_text(dimension, units: dict) -> str:
     """Return e.g. ``g um^2 s^-2`` for the exponents (1, 2, -2) of (mass, length, time).
 
-    ``units`` names the unit of each of ``length``, ``mass``, ``time``; no dimension gives ``1``.
+    ``units`` names the unit of ``length``, ``time`` and of ``mass`` or ``force``; the mass may be a
+    product such as ``pN um^-1 s^2``. No dimension gives ``1``.
     """
-    named = zip(("mass", "length", "time"), dimension, strict=True)
-    parts = [units[kind] + (f"^{power}" if power != 1 else "") for kind, power in named if power]
+    names = (mass_name(units), units["length"], units["time"])
+    powers: dict[str, int] = {}
+    for name, power in zip(names, dimension, strict=True):
+        for factor in name.split():
+            word, _, own = factor.partition("^")
+            powers[word] = powers.get(word, 0) + power * int(own or 1)
+    parts = [word + (f"^{power}" if power != 1 else "") for word, power in powers.items() if power]
     return " ".join(parts) or "1"
+
+
+def in_si(dimension, units: dict) -> float:
+    """Return what 1 in a unit of these exponents of (mass, length, time) is in SI units.
+
+    Raises KeyError for a name that is not known.
+    """
+    length, time = SI["length"][units["length"]], SI["time"][units["time"]]
+    name, *product = mass_name(units).split()
+    mass = SI["force"][name] / length * time**2 if product else SI["mass"][name]
+    return mass ** dimension[0] * length ** dimension[1] * time ** dimension[2]
 
 
 def thermal_energy(kelvin: float, units: dict) -> float:
@@ -26,7 +65,7 @@ def thermal_energy(kelvin: float, units: dict) -> float:
     1 kT at 298 K is 4.114e-6 g um^2 s^-2. Raises UsageError for a unit that is not known.
     """
     try:
-        length, mass, time = (SI[units[kind]] for kind in ("length", "mass", "time"))
+        return BOLTZMANN * kelvin / in_si((1, 2, -2), units)
     except KeyError as error:
-        raise UsageError(f"kT: do not know the unit {error} (known: {', '.join(SI)})") from error
-    return BOLTZMANN * kelvin / (mass * length**2 / time**2)
+        known = ", ".join(name for kind in SI.values() for name in kind)
+        raise UsageError(f"kT: do not know the unit {error} (known: {known})") from error

@@ -11,6 +11,10 @@ NASTY = (
     "'\\0'", '"\\0"', '"\\x1b[31m"', "\u202e", "écoute", "\U0001f40d", "s", "t", "sin(s)",
     "exp(9999*s)", "1/(s-s)", "log(t)", "where(s < 2, 1, 0)", "9**9**9", "open", "ring", "straight",
     "helix", "sine", "file", "euler", "rk4", "rkc", "yz", "algebraic9", "{spacings: 3}", "- 1",
+    "k", "2*pi/k", "i", "k*i - sigma", "period", "3*period", "left", "right", "{like: left}",
+    "{like: right, repeat: 3}", "{phi: pi}", "{i: 2}", "{k: k}", "{period: sigma, sigma: period}",
+    "{radius: 0.1}", "{young: 1e3, radius: 0.2}", "{force: pN}", "{force: pN, mass: g}", "Å",
+    "2*points", "600/3", "where(i < 2, 3, 4)", "arctan2(1, 2)", "(" * 200, "1" + "+1" * 300, "i*d",
     ": :", "# x", "|", ">",
 )  # fmt: skip
 _TOKEN = re.compile(r"[\w.+\-]+|\S")

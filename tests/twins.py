@@ -24,7 +24,7 @@ def enclosed(blob, r, e):
 
 def scalars(blob, r, e):
     """H1, H2, Q, D1, D2 in powers of R: (63)-(68) for (12), the same derivation for (13)."""
-    R = np.sqrt(r**2 + e**2)
+    R = (r**2 + e**2) ** 0.5
     if blob == "algebraic7":
         values = (
             (2 * e**2 + r**2) / R**3,

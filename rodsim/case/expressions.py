@@ -85,6 +85,11 @@ class Expression:
         return graph.absorb(self._graph, self._root)
 
     @property
+    def constant(self) -> float | None:
+        """The number it is, where it depends on none of its variables."""
+        return None if self.uses else float(self._graph.value(self._root))
+
+    @property
     def uses_s(self) -> bool:
         """Whether it depends on the arc length."""
         return "s" in self.uses

@@ -31,6 +31,7 @@ DIMENSIONS = {  # exponents of (mass, length, time)
     "stiffness": (1, 0, -2),
     "velocity": (0, 1, -1),
     "curvature": (0, -1, 0),
+    "pressure": (1, -1, -2),
 }
 ANGLES = {"angle": "rad", "degrees": "degree"}
 
@@ -106,10 +107,14 @@ class ScopedText(str):
 
 
 def expression_in(*variables: str) -> Any:
-    """Return the type of a key whose text is an expression in variables and the parameters."""
+    """Return the type of a key whose text is an expression in variables and the parameters.
 
-    def bound(text: str) -> Expression:
-        return Expression(text, getattr(text, "parameters", {}), variables)
+    One that needs none of the variables is the number it comes to.
+    """
+
+    def bound(text: str) -> Expression | float:
+        expression = Expression(text, getattr(text, "parameters", {}), variables)
+        return expression if expression.uses else expression.constant
 
     words = f"expression in {', '.join(variables)} and the parameters"
     schema = WithJsonSchema({"type": "string", "description": words})
@@ -118,7 +123,7 @@ def expression_in(*variables: str) -> Any:
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
 ParameterName = Annotated[Name, AfterValidator(not_reserved)]
-UnitName = Annotated[str, Field(pattern=r"^[A-Za-zµμ]{1,12}$")]
+UnitName = Annotated[str, Field(pattern=r"^[A-Za-zµμ\u00c5\u212b]{1,12}$")]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0), AfterValidator(in_range)]
 NotNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0)]

@@ -123,7 +123,7 @@ class _Reader:
             raise ExpressionError(
                 "not an expression: a '(' is not closed (has it commas? then it needs quotes)"
             )
-        return _ending_with(self.graph, self.operands[0][0])
+        return tuple(self.graph.nodes[: self.operands[0][0] + 1])  # a later one is in no use
 
     def _number(self, word: str, following: str) -> None:
         if following and following not in " +-*/%()<>,":
@@ -249,8 +249,3 @@ def _call(graph: Graph, name: str, arguments: list[int]) -> int:
     if name == "heaviside" and count == 1:
         arguments = [*arguments, graph.constant(0.5)]
     return graph.apply(function.operation, *arguments)
-
-
-def _ending_with(graph: Graph, root: int) -> tuple[Node, ...]:
-    """Return the nodes up to the root: a later one is in no use."""
-    return tuple(graph.nodes[: root + 1])

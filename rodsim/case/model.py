@@ -7,7 +7,15 @@ import os
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, Discriminator, Field, PrivateAttr, Tag
+from pydantic import (
+    AfterValidator,
+    Discriminator,
+    Field,
+    PrivateAttr,
+    Tag,
+    ValidationInfo,
+    field_validator,
+)
 
 from rodsim.case.expressions import Expression
 from rodsim.case.fields import (
@@ -19,28 +27,22 @@ from rodsim.case.fields import (
     NumberOrPair,
     ParameterName,
     Positive,
-    UnitName,
     Vector,
     not_empty,
     number_tag,
     quantity,
 )
+from rodsim.case.materials import WIDTHS, Material, Radius
 from rodsim.case.methods import METHODS, Method
+from rodsim.case.resolved import is_driven, resolved
 from rodsim.case.shapes import Shape
-from rodsim.case.source import Source
+from rodsim.case.source import Source, child
+from rodsim.case.unit_names import Units
 from rodsim.errors import Problem
 from rodsim.registry import with_words
 
 DEFAULT_FRAMES = 100
 FieldName = Literal["position", "director", "velocity", "angular_velocity", "force", "torque"]
-
-
-class Units(Model):
-    """Names of the units; the computation uses the plain numbers."""
-
-    length: UnitName = Field("um", description="unit of length")
-    mass: UnitName = Field("g", description="unit of mass")
-    time: UnitName = Field("s", description="unit of time")
 
 
 class Spacings(Model):
@@ -49,24 +51,34 @@ class Spacings(Model):
     spacings: Positive = Field(description="epsilon / ds")
 
 
+@with_words
 class Fluid(Model):
     """The fluid and the blob that spreads each point's load."""
 
     viscosity: Positive = quantity("viscosity", "dynamic viscosity")
     blob: Literal["algebraic7", "algebraic9"] = Field("algebraic7", description="eq. 12 or eq. 13")
     epsilon: Annotated[
-        Annotated[Positive, Tag("<number>")] | Annotated[Spacings, Tag("<mapping>")],
-        Discriminator(number_tag),
-    ] = quantity("length", "width of the blob: a length, or {spacings: n}")
+        Annotated[Positive, Tag("<number>")]
+        | Annotated[Spacings, Tag("<mapping>")]
+        | Annotated[Radius, Tag("<radius>")],
+        Discriminator(
+            lambda value: "<radius>" if child(value, "radius") is not None else number_tag(value)
+        ),
+    ] = quantity("length", "width of the blob: a length, {spacings: n}, or {radius: r}")
     density: Positive | None = quantity(
         "density", "only where kinetic energy is wanted", default=None
     )
 
+    @field_validator("epsilon", mode="after")
+    @classmethod
+    def _width(cls, epsilon: Any, info: ValidationInfo) -> Any:
+        """Return a radius as the width of the blob that moves like it."""
+        if not isinstance(epsilon, Radius):
+            return epsilon
+        return epsilon.radius * WIDTHS[info.data.get("blob", "algebraic7")]
 
-Fluid = with_words(Fluid)
 
-
-class Moduli(Model):
+class Moduli(Material):
     """Elastic moduli; bending and shear may differ along D1 and D2."""
 
     bending: NumberOrPair = quantity("bending", "a1 = a2, or [a1, a2]")
@@ -84,6 +96,7 @@ def _pair(value: float | tuple[float, float]) -> tuple[float, float]:
     return value if isinstance(value, tuple) else (value, value)
 
 
+@with_words
 class Rod(Model):
     """One elastic rod."""
 
@@ -110,9 +123,6 @@ class Rod(Model):
     def driven(self) -> bool:
         """Whether its strain twist depends on time."""
         return any(isinstance(entry, Expression) and entry.uses_t for entry in self.strain_twist)
-
-
-Rod = with_words(Rod)
 
 
 class Tube(Model):
@@ -179,6 +189,7 @@ TracerGroup = Annotated[
 ]
 
 
+@with_words
 class Case(Model):
     """A validated case file.
 
@@ -235,7 +246,7 @@ class Case(Model):
         """Longest step of rkc: over a drive that changes in time, it passes in small parts."""
         if self.time.max_step is not None:
             return self.time.max_step
-        return self.interval if _driven(self) else math.inf
+        return self.interval if is_driven(self) else math.inf
 
     def problem(self, key_path: str | tuple, reason: str) -> Problem:
         """Return a Problem at a key, with its file:line, value and unit, for later checks."""
@@ -247,36 +258,4 @@ class Case(Model):
         ``case_from_mapping`` makes the same case of it again. What another choice makes
         meaningless (the tolerance of euler and rk4) is left out.
         """
-        data = _plain(self)
-        data["output"]["interval"] = self.interval
-        for rod in data["rods"].values():
-            if not rod["parameters"]:  # as in files from before rods had any
-                del rod["parameters"]
-        if not self.time.method.adaptive:
-            del data["time"]["tolerance"]
-        return data
-
-
-Case = with_words(Case)
-
-
-def _driven(value: Any) -> bool:
-    """Tell whether anything in a model depends on time."""
-    if isinstance(value, Expression):
-        return value.uses_t
-    if isinstance(value, BaseModel):
-        value = {name: getattr(value, name) for name in type(value).model_fields}
-    if isinstance(value, dict):
-        value = tuple(value.values())
-    return isinstance(value, tuple) and any(map(_driven, value))
-
-
-def _plain(value: Any) -> Any:
-    """Return a model as dicts, lists and scalars; what is None is left out."""
-    if isinstance(value, BaseModel):
-        value = {name: getattr(value, name) for name in type(value).model_fields}
-    if isinstance(value, dict):
-        return {name: _plain(item) for name, item in value.items() if item is not None}
-    if isinstance(value, tuple):
-        return [_plain(item) for item in value]
-    return value.text if isinstance(value, Expression) else value
+        return resolved(self)

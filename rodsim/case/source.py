@@ -62,7 +62,7 @@ class Source:
         if place.dimension in ANGLES:
             return ANGLES[place.dimension]
         names = {}
-        for name in ("length", "mass", "time"):
+        for name in ("length", "mass", "time", "force"):
             given = self.value(("units", name))
             names[name] = clipped(given) if isinstance(given, str) else self._default_unit(name)
         return unit_text(DIMENSIONS[place.dimension], names)
@@ -70,10 +70,13 @@ class Source:
     def _default_unit(self, name: str) -> str:
         return self.root.child("units").child(name).default
 
+    def number(self, key_path: str, value: Any) -> Any:
+        """Return the number that the expression at a key came to; ``value`` where there is none."""
+        return self.numbers.get(_path(key_path), value)
+
     def problem(self, key_path: str | Path, reason: str) -> Problem:
         """Return a Problem at a key: its place, its value, and its unit if it is a number."""
-        parts = key_path.split(".") if isinstance(key_path, str) else key_path
-        path = tuple(int(p) if isinstance(p, str) and p.isdecimal() else p for p in parts)
+        path = _path(key_path)
         value, unit = shown(self.value(path)), self.unit(path)
         if path in self.numbers:
             value = f"{value} (= {self.numbers[path]:.6g})"
@@ -89,6 +92,11 @@ class Source:
         words = [f"--set {shlex.quote(text)}" for text in settings.values()]
         words += [f"-o {shlex.quote(output)}"] if output != DEFAULT_OUTPUT else []
         return " ".join(["rodsim run", path, *words])
+
+
+def _path(key_path: str | Path) -> Path:
+    parts = key_path.split(".") if isinstance(key_path, str) else key_path
+    return tuple(int(p) if isinstance(p, str) and p.isdecimal() else p for p in parts)
 
 
 def child(node: Any, part: str | int) -> Any:

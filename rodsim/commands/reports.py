@@ -3,9 +3,17 @@
 from __future__ import annotations
 
 from rodsim.case.methods import METHODS
+from rodsim.commands.groups import (
+    VISCOSITY,
+    describe_groups,
+    describe_parameters,
+    describe_rods,
+    in_water_units,
+)
 from rodsim.errors import FileError
 from rodsim.run.recorder import frame_times
 from rodsim.scene.build import build_scene
+from rodsim.units import unit_text
 
 MOST_RODS = 50  # described one by one
 
@@ -21,22 +29,18 @@ def describe_case(case, refuse=False) -> str:
     scene = build_scene(case)
     unit = case.units
     lines = [case.title] if case.title else []
-    for r, name in enumerate(scene.rods.names[:MOST_RODS]):
-        kind = "closed" if scene.rods.closed[r] else "open"
-        lines.append(
-            f"rod {name}: {scene.rods.count[r]} points, {kind}, length "
-            f"{scene.rods.lengths[r]:.6g} {unit.length}, spacing {scene.rods.spacing[r]:.6g}"
-        )
-    lines += _more_rods(len(scene.rods.names))
+    lines += [*describe_parameters(case), *describe_rods(case, scene)]
     lines.append(
-        f"fluid: viscosity {scene.viscosity:.6g} {unit.mass} {unit.length}^-1 {unit.time}^-1, "
-        f"{scene.blob}, epsilon {scene.epsilon:.6g} {unit.length} "
+        f"fluid: viscosity {scene.viscosity:.6g} {unit_text(VISCOSITY, unit.names)}"
+        f"{in_water_units(scene.viscosity, unit.names)}, {scene.blob}, "
+        f"epsilon {scene.epsilon:.6g} {unit.length} "
         f"= {scene.epsilon / scene.rods.spacing[0]:.4g} spacings"
     )
     if scene.planar:
         lines.append("planar: only u_y, u_z and w_x are computed")
     for name, count in scene.tracer_groups.items():
         lines.append(f"tracers {name}: {count} markers")
+    lines += describe_groups(case, scene)
     time = case.time
     option = METHODS[time.integrator].option
     how = f"{option} {getattr(time, option):g}"
@@ -46,10 +50,6 @@ def describe_case(case, refuse=False) -> str:
     if refuse:
         lines += [f"warning: {problem}" for problem in check_step(case, limits)]
     return "\n".join([*lines, *describe_limits(limits, unit.time)])
-
-
-def _more_rods(count: int) -> list[str]:
-    return [f"and {count - MOST_RODS} more rods"] if count > MOST_RODS else []
 
 
 def describe_limits(limits, time_unit: str) -> list[str]:
@@ -121,7 +121,8 @@ def describe_output(path) -> str:
         for rod in run.rods[:MOST_RODS]:
             kind = "closed" if rod.closed else "open"
             lines.append(f"rod {rod.name}: {rod.count} points, {kind}, spacing {rod.spacing:g}")
-        lines += _more_rods(len(run.rods))
+        if len(run.rods) > MOST_RODS:
+            lines.append(f"and {len(run.rods) - MOST_RODS} more rods")
         lines.append(f"fields: {', '.join(run.fields)}")
         lines.append(f"observables: {', '.join(run.observables)}")
         lines += [

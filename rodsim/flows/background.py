@@ -26,6 +26,7 @@ from rodsim.registry import Kind
 
 SPACE, VARIABLES = ("x", "y", "z"), ("x", "y", "z", "t")
 DIVERGENCE = 1e-8  # of the gradient: what is more is a slip
+ON_WALL = 1e-12  # of the gradient times the length of a rod: rounding
 WATCHED = 20  # points at which it is looked at how fast the flow changes
 
 
@@ -135,6 +136,8 @@ def _check_flow(flow, case, scene) -> None:
     problems = [*_wrong(velocity, gradient)]
     if scene.planar:
         problems += _out_of_plane(velocity, gradient)
+    if scene.wall is not None:
+        problems += _through_wall(flow, case, scene)
     if problems:
         where = ("fluid", "flow")
         raise CaseError([case.source.problem(where, reason) for reason in problems])
@@ -159,6 +162,17 @@ def _out_of_plane(velocity, gradient) -> Iterator[str]:
     spin = np.array([gradient[0, 2] - gradient[2, 0], gradient[1, 0] - gradient[0, 1]])
     if np.abs(velocity[0]).max() > 0.0 or np.abs(spin).max() > 0.0:
         yield "leaves the plane of the scene: u_x must be 0, and u_y, u_z must not depend on x"
+
+
+def _through_wall(flow, case, scene) -> Iterator[str]:
+    """On a wall the background flow vanishes too, as (a z, b z, 0) does at z = 0."""
+    points = scene.initial.position.copy()
+    points[2] = scene.wall
+    for t in np.linspace(0.0, case.time.end, WATCHED if flow.driven else 1):
+        speed = np.abs(flow.at(points, t)).max()
+        if not speed <= ON_WALL * scene.length_scale * np.abs(flow.gradient_at(points, t)).max():
+            yield f"is {speed:.3g} on the wall, z = {scene.wall:g}, at t = {t:.3g}: must vanish"
+            return
 
 
 def _pressure(flow, viscosity):

@@ -1,4 +1,4 @@
-"""The blobs (12) and (13) and the five scalars of their regularized Stokeslet, rotlet and dipole.
+"""The blobs (12), (13) and the scalars of their regularized Stokeslets, rotlets, dipoles, images.
 
 With r the distance, R^2 = r^2 + eps^2 and p = eps^2/R^2, everything below is without 1/(8 pi):
 
@@ -8,6 +8,10 @@ With r the distance, R^2 = r^2 + eps^2 and p = eps^2/R^2, everything below is wi
 from H1 = B'/r - G, H2 = (B'/r)'/r, Q = G'/r, D1 = psi - Q, D2 = -Q'/r. Written in p, both blobs
 share their leading terms (the singular solution) and differ in powers of p only. For r >> eps:
 H1 -> 1/r, H2 -> 1/r^3, Q -> 2/r^3, D1 -> -2/r^3, D2 -> 6/r^5.
+
+A plane wall (``wall.py``) needs four more, all from H2: P = H2'/r, E = -(3 H2 + r H2'),
+E1 = E'/r, E2 = E1'/r. Since div u = 0, E is also H1'/r + H2 = 2 H2 - Q: it is 0 for a point force,
+so E, E1, E2 fall off faster by (eps/r)^2 (algebraic7) or (eps/r)^4 (algebraic9).
 """
 
 import math
@@ -55,3 +59,18 @@ def dipole_scalars(blob, inverse, e2):
         inverse3 * (-2.0 + p * (-3.0 + p * (-22.5 + 52.5 * p))),
         inverse3 * inverse2 * (6.0 + p * (15.0 + 52.5 * p)),
     )
+
+
+@inline
+def image_scalars(blob, inverse, e2):
+    """Return (P, E, E1, E2) times 8 pi at 1/R = ``inverse``, squared blob size e2."""
+    inverse2 = inverse * inverse
+    inverse3 = inverse * inverse2
+    p = e2 * inverse2
+    if blob == ALGEBRAIC7:
+        e = -3.0 * p * inverse3
+        e1 = -5.0 * inverse2 * e
+        return -3.0 * inverse2 * inverse3, e, e1, -7.0 * inverse2 * e1
+    e = -7.5 * p * p * inverse3
+    e1 = -7.0 * inverse2 * e
+    return -inverse2 * inverse3 * (3.0 + 7.5 * p), e, e1, -9.0 * inverse2 * e1

@@ -1,33 +1,58 @@
-"""The fluid that the rods drive, as a part of a scene; the sums are in :mod:`rodsim.flows.free`."""
+"""The fluid that the rods drive: free, or above a plane wall on which it does not slip.
+
+The sums are in :mod:`rodsim.flows.free` and :mod:`rodsim.flows.wall`. A point of a rod at the wall
+or below it makes all velocities NaN: a step that gets there is rejected.
+"""
+
+from __future__ import annotations
 
 import numpy as np
 
+from rodsim.case.fields import Model, Number, quantity
 from rodsim.compiled.parts import FLOW, TRACERS, Part
 from rodsim.registry import Kind
 
 
+class Wall(Model):
+    """A plane wall on which the fluid does not slip; the fluid is above it."""
+
+    z: Number = quantity("length", "height of the wall")
+
+
 def fluid_parts(scene) -> list[Part]:
     """Return the sums (32), (33) over the rods of a scene, and those at tracers."""
-    fixed = np.array([scene.epsilon, scene.viscosity])
+    at_wall = scene.wall is not None
+    fixed = np.array([scene.epsilon, scene.viscosity, *([scene.wall] if at_wall else [])])
+    home = f"rodsim.flows.{'wall' if at_wall else 'free'}"
+    blob = scene.blob.removeprefix("algebraic")
     kind = "planar" if scene.planar else "spatial"
-    name = f"rodsim.flows.free:{{}}_{scene.blob.removeprefix('algebraic')}".format
     return [
-        Part("fluid", FLOW, name(kind), fixed=fixed),
-        Part("fluid", TRACERS, name("tracers"), fixed=fixed, pressure=_pressure(scene)),
+        Part("fluid", FLOW, f"{home}:{kind}_{blob}", fixed=fixed),
+        Part("fluid", TRACERS, f"{home}:tracers_{blob}", fixed=fixed, pressure=_pressure(scene)),
     ]
 
 
 def _pressure(scene):
     def pressure(points, sources, loads, t):
-        """Return the pressure (T,) at points (3, T), eq. (62)."""
+        """Return the pressure (T,) at points (3, T), eq. (62); NaN below a wall."""
+        from rodsim.flows import free, wall
         from rodsim.flows.blobs import BLOBS
-        from rodsim.flows.free import pressure_kernel
 
-        out = np.empty(points.shape[1])
-        pressure_kernel(BLOBS[scene.blob])(points, sources, loads, scene.epsilon, out)
+        home, height = (free, ()) if scene.wall is None else (wall, (scene.wall,))
+        out = np.zeros(points.shape[1])
+        kernel = home.pressure_kernel(BLOBS[scene.blob])
+        kernel(points, sources, loads, scene.epsilon, *height, out)
+        if height:
+            out[points[2] < scene.wall] = np.nan
         return out
 
     return pressure
 
 
-KIND = Kind(build=lambda case, scene: fluid_parts(scene))
+KIND = Kind(
+    build=lambda case, scene: fluid_parts(scene),
+    word="wall",
+    where="Fluid",
+    words=Wall,
+    about="a plane wall z = const. on which the fluid does not slip",
+)

@@ -1,13 +1,14 @@
 """Velocity, angular velocity and pressure of the fluid from point forces and torques.
 
 For notebooks and tests: arrays are (n, 3), one row per point. A run calls the kernels of
-``free.py`` on its own (3, n) arrays.
+``free.py`` and ``wall.py`` on its own (3, n) arrays.
 """
 
 import numpy as np
 
 from rodsim.compiled.threads import computing
 from rodsim.errors import UsageError
+from rodsim.flows import free
 from rodsim.flows.blobs import BLOBS
 from rodsim.flows.free import pressure_kernel, velocity_kernel
 
@@ -15,7 +16,16 @@ __all__ = ["BLOBS", "pressure", "pressure_kernel", "velocity", "velocity_kernel"
 
 
 def velocity(
-    targets, sources, forces, torques, epsilon, viscosity, *, blob="algebraic7", angular=True
+    targets,
+    sources,
+    forces,
+    torques,
+    epsilon,
+    viscosity,
+    *,
+    blob="algebraic7",
+    angular=True,
+    wall=None,
 ):
     """Return linear and angular velocity at ``targets``, eqs. (32), (33), (61), (66).
 
@@ -29,35 +39,72 @@ def velocity(
     viscosity : float > 0, mass length^-1 time^-1.
     blob : ``"algebraic7"``, eq. (12), or ``"algebraic9"``, eq. (13).
     angular : with False the second sum is not computed and None returned for it.
+    wall : float, length, or None. Height z of a plane wall without slip; the fluid is above it,
+        where all sources must be. Formulas: ``flows/wall.py``.
 
     Returns
     -------
     linear : (T, 3) array, length/time; angular : (T, 3) array, 1/time, half the vorticity.
+        NaN for targets below the wall, where there is no fluid.
 
     Raises
     ------
-    UsageError : a shape, the blob's name, epsilon or viscosity cannot be used.
+    UsageError : a shape, the blob's name, epsilon, viscosity or the wall's height cannot be used;
+        a source is at the wall or below it.
     """
     targets, sources, loads = _arrays(targets, sources, forces, torques)
-    kernel = velocity_kernel(_blob(blob), False, bool(angular))
+    sums, height = _sums(wall, sources)
+    kernel = sums.velocity_kernel(_blob(blob), False, bool(angular))
     out = np.zeros((6 if angular else 3, targets.shape[1]))
     fluid = _positive(epsilon, "epsilon"), _positive(viscosity, "viscosity")
     with computing():
-        kernel(targets, sources, loads, *fluid, out)
+        kernel(targets, sources, loads, *fluid, *height, out)
+    out[:, _below(targets, wall)] = np.nan
     return out[:3].T.copy(), (out[3:].T.copy() if angular else None)
 
 
-def pressure(targets, sources, forces, epsilon, *, blob="algebraic7"):
-    """Return the pressure (T,) at ``targets``, p = sum (g.r) Q, eq. (62); torques add nothing.
+def pressure(targets, sources, forces, epsilon, *, blob="algebraic7", wall=None, torques=None):
+    """Return the pressure (T,) at ``targets``, p = sum (g.r) Q, eq. (62).
 
-    Arguments as in :func:`velocity`; units mass length^-1 time^-2, zero far away.
+    Torques add nothing in free space. At a wall they do: there ``torques`` must be given. Other
+    arguments as in :func:`velocity`; units mass length^-1 time^-2, zero far away.
     """
-    targets, sources, loads = _arrays(targets, sources, forces, np.zeros_like(forces, dtype=float))
-    out = np.empty(targets.shape[1])
-    kernel, epsilon = pressure_kernel(_blob(blob)), _positive(epsilon, "epsilon")
+    if torques is None and wall is not None:
+        raise UsageError(
+            "at a wall torques make pressure too: give torques=..., zeros where there are none"
+        )
+    torques = np.zeros_like(forces, dtype=float) if torques is None else torques
+    targets, sources, loads = _arrays(targets, sources, forces, torques)
+    sums, height = _sums(wall, sources)
+    out = np.zeros(targets.shape[1])
+    kernel, epsilon = sums.pressure_kernel(_blob(blob)), _positive(epsilon, "epsilon")
     with computing():
-        kernel(targets, sources, loads, epsilon, out)
+        kernel(targets, sources, loads, epsilon, *height, out)
+    out[_below(targets, wall)] = np.nan
     return out
+
+
+def _sums(wall, sources):
+    """Return the module of the sums, and the height that those at a wall take."""
+    if wall is None:
+        return free, ()
+    from rodsim.flows import wall as at_wall
+
+    height = float(wall)
+    if not np.isfinite(height):
+        raise UsageError(f"wall must be a height z or None, not {wall}")
+    low = np.flatnonzero(sources[2] <= height)
+    if low.size:
+        z = sources[2, low[0]]
+        raise UsageError(
+            f"source {low[0]} is at z = {z:g}: sources must be above the wall z = {height:g}"
+        )
+    return at_wall, (height,)
+
+
+def _below(targets, wall):
+    """Return which targets are below the wall, or an empty slice where there is none."""
+    return slice(0) if wall is None else targets[2] < wall
 
 
 def _arrays(targets, sources, forces, torques):

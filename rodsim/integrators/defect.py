@@ -16,7 +16,7 @@ strongly disturbed rod relaxes, and the error control then rejects the step.
 
 import numpy as np
 
-from rodsim.integrators.passes import defect, weighted_sum
+from rodsim.compiled.passes import defect, weighted_sum
 
 MEMORY = 0.5  # 0: unstable where steps grow by a quarter; 1: more errors of stiff modes, and lag
 TREND = 0.3  # share of the change of y''' that is carried on; 0.5 can be unstable
@@ -47,15 +47,15 @@ class Defect:
         weighted_sum(factor * (1.0 + trend), third, -factor * trend, oldest, g)
         return g
 
-    def remaining(self, size, c, y, f0, f1, g, weights) -> float:
-        """Return the weighted rms of the error left in a trial step, C h^3 y''' - h g.
+    def remaining(self, size, c, y, f0, f1, g) -> np.ndarray:
+        """Return the error left in each number of a trial step, C h^3 y''' - h g.
 
         h^3 y''' = [h (f_0 + f_1)/2 - y + m h g]/(1/12 + m C), m = MEMORY, for the increment y
         with g in it; without g it is the same with m = 1, g = 0.
         """
         memory, g = (1.0, np.zeros_like(y)) if g is None else (MEMORY, g)
-        third = np.empty_like(y)
-        error = defect(size, c, memory, y, f0, f1, g, weights, third)
+        third, error = np.empty((2, y.size))
+        defect(size, c, memory, y, f0, f1, g, third, error)
         self._trial = third, size
         return error
 

@@ -83,7 +83,8 @@ class RateWatch:
 
     def follow(self, step) -> None:
         """Check the rate if the increments have doubled since it was last checked."""
-        largest = float(np.abs(step.increment * self.system.weights).max())
+        weights = self.system.weights
+        largest = float(np.abs(step.increment[: weights.size] * weights).max())
         if largest > 2.0 * self._largest:
             self._largest = largest
             self.check(step.end)

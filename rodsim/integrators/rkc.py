@@ -81,8 +81,7 @@ def error_constant(s: int) -> float:
 
 
 class RKC:
-    """Adaptive RKC. ``tolerance`` bounds the local error of a step, in the norm of the contract:
-    root mean square over all components of the rods, positions relative to the longest rod.
+    """Adaptive RKC. ``tolerance`` bounds the local error of a step, in ``RodSystem.size_of``.
     ``longest`` : no step is longer than this.
     """
 
@@ -190,8 +189,7 @@ class RKC:
 
     def _error(self, size, c, y, f0, f1, g):
         """Return the local error that the correction has left, over the tolerance."""
-        weights = self.system.weights[: self.system.rod_size]
-        return self._defect.remaining(size, c, y, f0, f1, g, weights) / self.tolerance
+        return self.system.size_of(self._defect.remaining(size, c, y, f0, f1, g)) / self.tolerance
 
     def _grow(self, size, error):
         """Choose the next size by the filter H211b from the last two sizes and errors.
@@ -240,6 +238,6 @@ class RKC:
         """Return a first step from the change of the rate over a step of 1/rho."""
         trial = min(1.0 / self.spectral_radius, end)
         f1 = self.system.rate(state.time + trial, state, trial * f0, self.system.zeros())
-        n, w = self.system.rod_size, self.system.weights
+        n, w = self.system.rod_size, self.system.weights  # a guess: one norm over all rods will do
         change = trial * np.sqrt(np.mean(np.square((f1 - f0)[:n] * w[:n]))) / self.tolerance
         return min(end, 0.1 * trial / math.sqrt(change) if change > 0.0 else end)

@@ -4,15 +4,15 @@ import math
 
 import numpy as np
 
-from rodsim.integrators.passes import image, probe
+from rodsim.compiled.passes import image, probe
 from rodsim.scene.state import State
 from rodsim.scene.system import RodSystem
 
-PERTURBATION = 1e-6  # rad, and of the longest rod
+PERTURBATION = 1e-6  # rad, and of the length of a rod
 
 
 class SpectralRadius:
-    """Arnoldi iteration in the scaled norm (positions relative to the longest rod).
+    """Arnoldi iteration in the scaled norm (positions relative to the length of their rod).
 
     The Jacobian is never formed: J v is (f(y + d v) - f(y))/d. Its largest eigenvalues lie close
     together, where power iteration can stand still at one of them, up to 9 % below the largest.

@@ -47,4 +47,14 @@ class Listener:
         """Hear how the run has ended, however it has: also before an error goes up."""
 
 
-SILENT = Listener()
+class Functions(Listener):
+    """A listener made of functions: ``notify`` hears warnings, ``stop`` is asked after each step,
+    ``progress`` has ``update(fraction, note)``. None of them is as in a :class:`Listener`."""
+
+    def __init__(self, notify=None, stop=None, progress=None):
+        if notify is not None:
+            self.warn = notify
+        if stop is not None:
+            self.stop = stop
+        if progress is not None:
+            self.update = progress.update

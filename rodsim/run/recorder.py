@@ -33,7 +33,7 @@ def plan_output(case, scene, checkpoint: dict) -> Plan:
         times=frame_times(case.time.end, case.interval),
         tracers=scene.initial.tracer.shape[1],
         fields=case.output.fields,
-        units=case.units.model_dump(),
+        units=case.units.names,
         density=scene.density is not None,
         checkpoint=checkpoint,
         extra=extra_series(scene),

@@ -8,13 +8,22 @@ from time import perf_counter
 from rodsim.case import Case
 from rodsim.errors import FileError, UsageError
 from rodsim.output import TrajectoryWriter
-from rodsim.run.listener import SILENT, Listener, Summary
+from rodsim.run.listener import Functions, Listener, Summary
 from rodsim.run.past import open_past
 from rodsim.scene.build import build_scene
 
 
 def simulate(
-    case, output, *, overwrite=False, threads=None, force=False, listener: Listener = SILENT
+    case,
+    output,
+    *,
+    overwrite=False,
+    threads=None,
+    force=False,
+    notify=None,
+    stop=None,
+    progress=None,
+    listener: Listener | None = None,
 ) -> Summary:
     """Run a case and stream it to an HDF5 file.
 
@@ -25,17 +34,21 @@ def simulate(
         on (``Summary.moved``), unless ``overwrite``.
     threads : number of threads, at least 1, or None for as many as the scene is worth.
     force : run also with a fixed step above its limit of stability.
-    listener : a :class:`rodsim.run.listener.Listener` that hears of the run and may stop it.
+    notify : called with the text of each warning; by default they are Python's own.
+    stop : called after each step; returns why the run is to stop there, or an empty text.
+    progress : object with ``update(fraction, note)``.
+    listener : one :class:`rodsim.run.listener.Listener` in place of these three.
 
     Raises
     ------
     CaseError : the geometry of the scene cannot be used, or a fixed step is above its limit.
     FileError : the output cannot be written.
     DivergedError : the run stopped; the frames before that are in the file, its status is set.
-    StoppedError : the listener gave a reason; :func:`resume` goes on from there.
+    StoppedError : ``stop`` gave a reason; :func:`resume` goes on from there.
     """
     if not isinstance(case, Case):
         raise UsageError("simulate takes a case: rodsim.load_case(path)")
+    listener = listener or Functions(notify, stop, progress)
     started = perf_counter()
     _refuse_sources(case, output)
     scene = build_scene(case)
@@ -54,13 +67,23 @@ def simulate(
             return record(machine, scene.initial, recorder, listener)
 
 
-def resume(output, *, overrides=(), threads=None, listener: Listener = SILENT) -> Summary:
+def resume(
+    output,
+    *,
+    overrides=(),
+    threads=None,
+    notify=None,
+    stop=None,
+    progress=None,
+    listener: Listener | None = None,
+) -> Summary:
     """Go on with a run where it stopped or was killed, in the same file, with the same bits.
 
     ``overrides`` may set a later ``time.end`` and add to ``output.fields``, nothing else; the rest
     is as in :func:`simulate`. Raises CaseError for other changes, FileError for a file that cannot
     be gone on with. A finished run without changes is left as it is.
     """
+    listener = listener or Functions(notify, stop, progress)
     started = perf_counter()
     with open_past(output, overrides) as past:
         if past.complete:

@@ -56,7 +56,7 @@ class Watch:
         fixed = not integrator.method.adaptive
         self.remedy = (_fixed_step_remedy if fixed else _adaptive_remedy)(case, system)
         self._rates = RateWatch(system, integrator, radius) if fixed and radius else None
-        initial = system.scene.initial.position
+        self.wall, initial = system.scene.wall, system.scene.initial.position
         self.centre = initial.mean(axis=1, keepdims=True)
         extent = np.abs(initial - self.centre).max()
         self.farthest = FARTHEST * max(extent, system.scene.length_scale)
@@ -78,7 +78,8 @@ class Watch:
     def check(self, step: Step) -> None:
         """Raise DivergedError if the state at the end of a step means nothing."""
         state = step.end
-        if _in_order(state.position, state.director, self.centre, self.farthest):
+        within = _in_order(state.position, state.director, self.centre, self.farthest)
+        if within and not self._below_wall(state):
             if self._rates:
                 self._rates.follow(step)
             return
@@ -89,9 +90,16 @@ class Watch:
         distance = np.abs(state.position - self.centre).max(axis=0)
         if self._rates:
             self._rates.follow(step)
+        if self._below_wall(state):
+            z = state.position[2]
+            what = f"is at z = {z.min():.6g}, not above the wall, z = {self.wall:g}"
+            self._stop(step.number, step.start, what, int(z.argmin()))
         if distance.max() > self.farthest:
             what = f"position has left all bounds, {distance.max():.3g} from the start"
             self._stop(step.number, step.start, what, int(distance.argmax()))
+
+    def _below_wall(self, state):
+        return self.wall is not None and state.position[2].min() <= self.wall
 
     def frame(self, number: int) -> None:
         """Remember the last good frame."""

@@ -11,6 +11,7 @@ from rodsim.compiled.parts import PartList
 from rodsim.errors import CaseError, FileError
 from rodsim.nodes import lay_out
 from rodsim.registry import kinds
+from rodsim.scene.at_wall import below_wall
 from rodsim.scene.shapes import FORMULAS, place
 from rodsim.scene.state import Scene, State
 from rodsim.scene.stored import read_shape
@@ -54,7 +55,10 @@ def build_scene(case, stored=None) -> Scene:
         density=case.fluid.density,
         tracer_groups=groups,
         initial=State(0.0, position, director, tracer),
+        wall=case.fluid.wall and case.fluid.wall.z,
     )
+    if problems := list(below_wall(case, scene)):
+        raise CaseError(problems)
     return with_parts(scene, [part for kind in kinds() for part in kind.build(case, scene)])
 
 

@@ -34,7 +34,7 @@ class State:
 
 @dataclass(frozen=True)
 class Scene:
-    """A case made ready to run."""
+    """A case made ready to run. ``wall``: its height, or None where there is none."""
 
     rods: Rods
     epsilon: float
@@ -44,6 +44,7 @@ class Scene:
     density: float | None
     tracer_groups: dict[str, int]
     initial: State
+    wall: float | None = None
     parts: PartList = NO_PARTS
 
     @property

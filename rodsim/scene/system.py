@@ -10,6 +10,7 @@ from time import perf_counter
 import numpy as np
 
 from rodsim.compiled.parts import FLOW, FORCE
+from rodsim.compiled.passes import largest_rms
 from rodsim.compiled.rotations import displace
 from rodsim.forces.elasticity import first_half_turn
 from rodsim.scene.calls import Calls
@@ -39,9 +40,10 @@ class RodSystem:
         geometry = np.empty((3, n)), np.empty((3, 3, n)), np.empty((3, p))
         self._work = geometry, np.empty((6, n)), np.empty((accounts, 6, n))
         self._rows = None if self._calls.driven else self._calls.rows_at(np.zeros(1))
-        # Error norms measure lengths against the longest rod and angles in radians.
-        self.weights = np.ones(self.size)
-        self.weights[: 3 * n] = self.weights[6 * n :] = 1.0 / scene.length_scale
+        # Lengths count over the rod's own, those of tracers over the longest; angles in radians.
+        self.weights = np.ones(self._tracers_end)
+        self.weights[: 3 * n] = np.tile(np.repeat(1.0 / scene.rods.lengths, scene.rods.count), 3)
+        self.weights[6 * n :] = 1.0 / scene.length_scale
 
     def zeros(self) -> np.ndarray:
         """Return the increments (or rates) of a step's start."""
@@ -51,6 +53,15 @@ class RodSystem:
         """Return the views position (3, N), rotation vector (3, N), tracer (3, P) of y."""
         rods = y[: self.rod_size].reshape(self._shape)
         return rods[:3], rods[3:], y[self.rod_size : self._tracers_end].reshape(3, -1)
+
+    def size_of(self, change: np.ndarray) -> float:
+        """Return how large a change of increments is: the largest root mean square of its parts.
+
+        Parts are each rod, positions over its own length and angles in radians, and all tracers,
+        over the length of the longest rod. The ledger does not count.
+        """
+        rods = self.scene.rods
+        return largest_rms(change, self.weights, rods.first, rods.count)
 
     def rate(self, t: float, base: State, y: np.ndarray, out: np.ndarray) -> np.ndarray:
         """Write dy/dt at increments ``y`` from ``base`` at time ``t`` into ``out``, return it."""

@@ -105,6 +105,7 @@ def _load(case_path, fixed, axes, choices, folder):
             problems += [_at_row(problem, where, values) for problem in found]
             continue
         units |= {key: case.source.unit(tuple(key.split("."))) for key in values}
+        values = {key: case.source.number(key, value) for key, value in values.items()}
         name = _name(values)
         if name in runs:
             raise UsageError(f"the sweep has the run {name} twice")

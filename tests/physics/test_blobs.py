@@ -5,7 +5,15 @@ import pytest
 import twins
 from scipy.integrate import quad
 
-from rodsim.flows.blobs import BLOBS, dipole_scalars, inverse_distance, stokeslet_scalars
+from rodsim import velocity
+from rodsim.case.materials import WIDTHS
+from rodsim.flows.blobs import (
+    BLOBS,
+    dipole_scalars,
+    image_scalars,
+    inverse_distance,
+    stokeslet_scalars,
+)
 
 EPSILON = 0.37
 DISTANCES = [0.05, 0.4, 1.3, 6.0]
@@ -14,12 +22,14 @@ both_blobs = pytest.mark.parametrize("blob", BLOBS)
 
 def fast_scalars(blob, r, e):
     """The product's formulas, run as plain Python."""
-    inverse, stokeslet, dipole = (
-        getattr(f, "py_func", f) for f in (inverse_distance, stokeslet_scalars, dipole_scalars)
-    )
-    where = BLOBS[blob], inverse(r * r, e * e), e * e
-    values = *stokeslet(*where), *dipole(*where)
-    return np.array(values) / (8 * np.pi)
+    return np.array(scalars_of(blob, r, e, stokeslet_scalars, dipole_scalars)) / (8 * np.pi)
+
+
+def scalars_of(blob, r, e, *functions):
+    """What functions of (blob, 1/R, eps^2) return, times 8 pi, in one list."""
+    plain = [getattr(f, "py_func", f) for f in (inverse_distance, *functions)]
+    where = BLOBS[blob], plain[0](r * r, e * e), e * e
+    return [value for function in plain[1:] for value in function(*where)]
 
 
 @both_blobs
@@ -78,3 +88,54 @@ def test_far_away_they_are_the_singular_stokeslet_rotlet_and_dipole(blob):
     expected = np.array([1 / r, 1 / r**3, 2 / r**3, -2 / r**3, 6 / r**5]) / (8 * np.pi)
     # The next term is of relative order (eps/r)^2 = 1e-8 with factors up to 4.
     assert fast_scalars(blob, r, EPSILON) == pytest.approx(expected, rel=5e-8)
+
+
+@pytest.mark.parametrize(
+    ("blob", "expected"),
+    [
+        ("algebraic7", [-0.00948683298051, -0.00948683298051, 0.00474341649025, -0.00332039154318]),
+        ("algebraic9", [-0.0118585412256, -0.00237170824513, 0.00166019577159, -0.00149417619443]),
+    ],
+)
+def test_values_of_images_at_a_point(blob, expected):
+    # eps = 1, x = (1, 2, 2); twelve digits of a separate program.
+    assert scalars_of(blob, 3.0, 1.0, image_scalars) == pytest.approx(expected, rel=1e-11)
+
+
+@both_blobs
+@pytest.mark.parametrize("r", DISTANCES)
+def test_identities_of_the_scalars_of_images(blob, r):
+    """P = H2'/r, E = -(3 H2 + r H2') = H1'/r + H2, E1 = E'/r, E2 = E1'/r; D2 = E1 - 2 P."""
+    h = 1e-4 * r
+
+    def values(r):
+        return np.array(
+            scalars_of(blob, r, EPSILON, stokeslet_scalars, dipole_scalars, image_scalars)
+        )
+
+    far = [values(r + k * h) for k in (-2, -1, 1, 2)]
+    slope = (far[0] - 8 * far[1] + 8 * far[2] - far[3]) / (12 * h)  # relative error about 1e-13
+    h1, h2, q, _, d2, p, e, e1, e_2 = values(r)
+    assert slope[1] == pytest.approx(r * p, rel=1e-9)
+    assert -3 * h2 - r * slope[1] == pytest.approx(e, abs=1e-9 * h2)
+    assert slope[0] / r + h2 == pytest.approx(e, abs=1e-9 * h1 / r**2)
+    assert 2 * h2 - q == pytest.approx(e, abs=1e-14 * h2)
+    assert slope[6] == pytest.approx(r * e1, rel=1e-9)
+    assert slope[7] == pytest.approx(r * e_2, rel=1e-9)
+    assert e1 - 2 * p == pytest.approx(d2, rel=1e-14)
+
+
+@pytest.mark.parametrize("blob", WIDTHS)
+def test_a_line_of_blobs_moves_as_a_cylinder_of_its_radius(blob):
+    """Batchelor (1970): 2 ln(2L/a) + 1 across and 4 ln(2L/a) - 2 along, at the middle of 2L."""
+    radius, half, spacing = 0.37, 400.0, 0.1
+    z = np.arange(-half + spacing / 2, half, spacing)
+    sources = np.column_stack([0 * z, 0 * z, z])
+    slender = np.log(2 * half / radius)
+    for axis, expected in ((0, 2 * slender + 1), (2, 4 * slender - 2)):
+        forces = np.zeros_like(sources)
+        forces[:, axis] = spacing
+        moved = velocity(np.zeros((1, 3)), sources, forces, 0 * forces,
+                         epsilon=WIDTHS[blob] * radius, viscosity=0.7, blob=blob)[0]  # fmt: skip
+        # the sum is the integral to rounding at five spacings an epsilon; ends: (a/L)^2
+        assert 8 * np.pi * 0.7 * moved[0, axis] == pytest.approx(expected, rel=1e-5)

@@ -91,14 +91,14 @@ def test_info_tells_finished_stopped_killed_and_running(tmp_path):
     told = call("info", path).stdout.splitlines()
     assert told[0] == f"{path}: killed; go on with: rodsim resume {path}"
     with pytest.raises(StoppedError):
-        resume(path, listener=after(3))
+        resume(path, stop=after(3))
     assert call("info", path).stdout.startswith(f"{path}: stopped; go on with: rodsim resume")
 
     def running():
         assert call("info", path).stdout.startswith(f"{path}: running, process {os.getpid()} on ")
         return ""
 
-    resume(path, listener=after(2, running))
+    resume(path, stop=after(2, running))
     assert call("info", path).stdout.startswith(f"{path}: finished\n17 of 17 frames")
     assert "17 frames are whole" in call("info", path, "--check").stdout
 
@@ -179,7 +179,7 @@ def soak(folder, count):
     case, path, rounds = make(folder, PLANAR, ["time.end=2e-3"]), folder / "out.h5", []
     for _ in range(count):
         try:
-            simulate(case, path, overwrite=True, listener=after(6))
+            simulate(case, path, overwrite=True, stop=after(6))
         except StoppedError:
             resume(path)
         with open_trajectory(path) as run:

@@ -74,7 +74,7 @@ ONE_PROBLEM = [
     ("viscosity: 1.3e-6", "viscosity:", 5, "fluid.viscosity", "missing: needs a number"),
     ("  viscosity: 1.3e-6\n", "", 4, "fluid.viscosity", "missing: needs a number"),
     ("density: 1.0e-12", "density: -2", 7, "fluid.density = -2", "must be > 0 (g um^-3)"),
-    ("{spacings: 7}", "wide", 6, "fluid.epsilon = wide", "a number or a mapping with spacings"),
+    ("{spacings: 7}", "wide", 6, "fluid.epsilon = wide", "must be a number, a mapping with"),
     ("{spacings: 7}", "-0.3", 6, "fluid.epsilon = -0.3", "must be > 0 (um)"),
     ("{spacings: 7}", "{spacings: 0}", 6, "fluid.epsilon.spacings = 0", "must be > 0"),
     ("{spacings: 7}", "{}", 6, "fluid.epsilon.spacings", "missing: needs a number"),
@@ -130,7 +130,7 @@ ONE_PROBLEM = [
     (", 0, 0]\nplane", ", 0, true]\nplane", 20, f"{TWIST}.2 = true",
      "must be a number or an expression (um^-1)"),
     (", 0, 0]\nplane", ", 0, 0.1]\nplane", 20, f"{TWIST}.2 = 0.1", "where plane is yz"),
-    (", 0, 0]\nplane", ", '0', 0]\nplane", 20, f"{TWIST}.1 = 0", "must be the number 0"),
+    (", 0, 0]\nplane", ", '0*s', 0]\nplane", 20, f"{TWIST}.1 = 0*s", "must be the number 0"),
     # names and unknown keys
     ("viscosity:", "density: 3\n  viscosity:", 8, "fluid.density", "duplicate key"),
     ("title:", "titel:", 1, "titel", "unknown key: did you mean 'title'?"),

@@ -351,3 +351,29 @@ def test_a_disk_that_is_too_small_shows_before_the_run(here, monkeypatch):
     assert result.exit_code == 4
     assert "1 kB are free" in result.stderr
     assert list(here.iterdir()) == []
+
+
+def test_info_says_what_became_of_copies_and_compares_scenes(here):
+    two = call("info", str(CONFIGS / "two_flagella.yaml")).stdout
+    assert "parameters: k = 1.25664, b = 0.3, sigma = 400, period = 0.015708, d = 1\n" in two
+    assert "rod right (like left): 151 points" in two
+    assert "; phi = 3.14159\n" in two
+    assert "viscosity 1e-06 g um^-1 s^-1 (1 mPa s)" in two
+    # xi = 4 pi mu/(ln(L/r) + 1/2), tau = xi L^4/a, Sp = L (xi sigma/a)^(1/4), by hand
+    radius = 4 * 20 / 150 * np.exp(-0.5)
+    drag = 4 * np.pi * 1e-6 / (np.log(20 / radius) + 0.5)
+    assert f"elasto-viscous time {drag * 20**4 / 3.5e-2:.4g} s, drive 400 rad/s" in two
+    assert f"sperm number {20 * (drag * 400 / 3.5e-2) ** 0.25:.4g}\n" in two
+    row = call("info", str(CONFIGS / "carpet.yaml"), "--set", "parameters.n=4").stdout
+    assert "rods flagellum_0 to flagellum_3 (flagellum, repeated): 41 points" in row
+    force = call("info", RING, "--set", "units={force: pN}").stdout
+    assert "viscosity 1e-06 pN um^-2 s (0.001 mPa s)" in force
+
+
+def test_a_run_in_units_of_force_says_them(here):
+    small = ("--set", "rods.ring.shape.points=40", "--set", "time.end=1e-5")
+    assert call("run", RING, "--set", "units={force: pN}", *small).exit_code == 0
+    with open_trajectory("out.h5") as run:
+        assert run.unit("bending_energy") == "pN um"
+        assert run.units["mass"] == "pN um^-1 s^2"
+    assert "kT" in call("energy", "out.h5", "--kT", "298").stdout

@@ -95,6 +95,24 @@ def test_the_flagellum_swims_as_its_header_says(tmp_path):
 
 
 @pytest.mark.compiled
+def test_two_flagella_swim_and_part_as_their_header_says(tmp_path):
+    with run("two_flagella", tmp_path) as trajectory:
+        begin, end = (abs(trajectory.time - n * PERIOD).argmin() for n in (1, 3))
+        way = (trajectory.position[end] - trajectory.position[begin]) / (2 * PERIOD)
+        left, right = (way[r.first : r.first + r.count].mean(axis=0) for r in trajectory.rods)
+        assert left[2] == pytest.approx(12.8, abs=0.1)
+        assert right - left == pytest.approx([0, 0.18, 0], abs=0.01)
+
+
+@pytest.mark.compiled
+def test_the_carpet_moves_as_its_header_says(tmp_path):
+    with run("carpet", tmp_path) as trajectory:
+        assert [rod.name for rod in trajectory.rods] == [f"flagellum_{i}" for i in range(10)]
+        velocity = swimming_velocity(trajectory.time, trajectory.position, PERIOD)
+        assert velocity[0] == pytest.approx(-1.70, abs=0.02)
+
+
+@pytest.mark.compiled
 def test_markers_of_the_low_twist_ring_are_stored(tmp_path):
     options = ("--set", "time.end=1e-3", "--set", "tracers.inner.along=10")
     with run("closed_ring_low_twist", tmp_path, *options) as trajectory:
@@ -105,4 +123,5 @@ def test_markers_of_the_low_twist_ring_are_stored(tmp_path):
 def test_every_config_is_tested_here():
     assert {path.stem for path in CONFIGS.glob("*.yaml")} == {
         "open_rod", "open_rod_half_twist", "closed_ring", "closed_ring_low_twist", "flagellum",
+        "two_flagella", "carpet",
     }  # fmt: skip

@@ -22,7 +22,7 @@ from rodsim.scene.build import build_scene
 from rodsim.scene.system import RodSystem
 
 MOST_POINTS = 400  # larger scenes are valid, and only built: their step takes too long here
-SMALL = ("points: 200", "points: 600", "points: 76", "along: 100")
+SMALL = ("points: 200", "points: 600", "points: 151", "points: 41", "points: 76", "along: 100")
 TEXTS = [path.read_text() for path in sorted(CONFIGS.glob("*.yaml"))]
 TEXTS += [template(kind) for kind in TEMPLATES]
 for words in SMALL:
@@ -118,6 +118,19 @@ entries = st.one_of(
         ["sin(s)", "0.3*cos(7*t)", "where(s < 0.2, 1, -1)", "exp(t)", "tanh(s - t)", "1/s"]
     ),
 )
+numbers = st.recursive(
+    st.sampled_from(["a", "b", "c", "2", "0.5", "pi"]),
+    lambda inner: st.tuples(inner, st.sampled_from(["+", "-", "*", "/", "**", " % "]), inner).map(
+        lambda parts: f"({''.join(parts)})"
+    ),
+    max_leaves=6,
+)
+copies = st.fixed_dictionaries({"like": st.sampled_from("abcde")}, optional={
+    "repeat": st.one_of(st.integers(0, 3), numbers),
+    "parameters": st.dictionaries(st.sampled_from("abi"), st.one_of(st.floats(-2, 2), numbers)),
+    "shape": st.fixed_dictionaries({"origin": st.lists(numbers, min_size=3, max_size=3)}),
+    "strain_twist": st.lists(st.one_of(entries, numbers), min_size=3, max_size=3),
+})  # fmt: skip
 rods = st.fixed_dictionaries({
     "shape": shapes,
     "moduli": st.fixed_dictionaries({
@@ -132,7 +145,8 @@ cases = st.fixed_dictionaries({
         "viscosity": positive(1e-9, 1e3), "epsilon": positive(1e-3, 1e2),
         "blob": st.sampled_from(["algebraic7", "algebraic9"]),
     }),
-    "rods": st.dictionaries(st.sampled_from("abc"), rods, min_size=1, max_size=3),
+    "parameters": st.dictionaries(st.sampled_from("abc"), st.one_of(st.floats(-2, 2), numbers)),
+    "rods": st.dictionaries(st.sampled_from("abc"), rods | copies, min_size=1, max_size=3),
     "time": st.fixed_dictionaries({"end": positive(1e-9, 1e6), "tolerance": positive(1e-10, 1e-1)}),
 })  # fmt: skip
 

@@ -17,7 +17,6 @@ from rodsim import load_case, open_trajectory, resume, simulate
 from rodsim.cli import main
 from rodsim.compiled.settings import machine
 from rodsim.errors import CaseError, FileError, StoppedError
-from rodsim.run.listener import Listener
 
 MODULI = "moduli: {bending: 3.5e-3, twisting: 2.5e-3, shear: 0.7, stretch: 0.9}"
 DRIVEN = f"""
@@ -67,25 +66,18 @@ def make(folder, text, overrides=()):
 
 
 def after(steps, then=lambda: "the test"):
-    """Return a listener that calls ``then`` once so many steps were made: why it is to stop."""
+    """Return a ``stop`` that calls ``then`` once so many steps were made."""
     made = [0]
 
     def stop():
         made[0] += 1
         return then() if made[0] == steps else ""
 
-    return Asking(stop)
-
-
-class Asking(Listener):
-    """A listener that asks a function, after each step, whether the run is to stop."""
-
-    def __init__(self, stop):
-        self.stop = stop
+    return stop
 
 
 def killed_at_every_step(path, folder):
-    """Return a listener that keeps a copy of the file at every step: what a kill would leave."""
+    """Return a ``stop`` that keeps a copy of the file at every step: what a kill would leave."""
     made = [0]
 
     def stop():
@@ -93,7 +85,7 @@ def killed_at_every_step(path, folder):
         shutil.copy(path, folder / f"{made[0]}.h5")
         return ""
 
-    return Asking(stop)
+    return stop
 
 
 @pytest.fixture(params=SCENES, scope="module")
@@ -103,8 +95,8 @@ def unbroken(request, tmp_path_factory):
     (folder / "killed").mkdir()
     text, overrides = SCENES[request.param]
     path = folder / "out.h5"
-    listener = killed_at_every_step(path, folder / "killed")
-    simulate(make(folder, text, overrides), path, listener=listener)
+    stop = killed_at_every_step(path, folder / "killed")
+    simulate(make(folder, text, overrides), path, stop=stop)
     return path, sorted(folder.glob("killed/*.h5"), key=lambda name: int(name.stem))
 
 
@@ -126,7 +118,7 @@ def test_any_number_of_kills_and_any_number_of_threads(unbroken, tmp_path):
     stops = 0
     while open_trajectory(copy).status != "finished":
         with suppress(StoppedError):
-            resume(copy, listener=after(len(killed) // 7), threads=1 + stops % 2)
+            resume(copy, stop=after(len(killed) // 7), threads=1 + stops % 2)
         stops += 1
     assert stops >= 7
     assert differences(copy, path) == []
@@ -186,7 +178,7 @@ def test_a_rod_from_a_file_goes_on_without_it(tmp_path):
     case = make(tmp_path, text, ["time.end=2e-3"])
     simulate(case, tmp_path / "whole.h5")
     with pytest.raises(StoppedError):
-        simulate(case, tmp_path / "out.h5", listener=after(9))
+        simulate(case, tmp_path / "out.h5", stop=after(9))
     (tmp_path / "first.h5").unlink()
     resume(tmp_path / "out.h5")
     assert differences(tmp_path / "out.h5", tmp_path / "whole.h5") == []
@@ -221,7 +213,7 @@ def test_a_longer_run_can_be_killed_and_go_on(tmp_path):
     later = ["time.end=4.1e-3"]
     resume(path, overrides=later)
     with pytest.raises(StoppedError):
-        resume(tmp_path / "other.h5", overrides=later, listener=after(7))
+        resume(tmp_path / "other.h5", overrides=later, stop=after(7))
     resume(tmp_path / "other.h5")
     assert differences(tmp_path / "other.h5", path) == []
 
@@ -230,7 +222,7 @@ def test_fields_that_are_added_are_there_for_all_frames(tmp_path):
     more = ["output.fields=[position, director, velocity, torque, force, angular_velocity]"]
     simulate(make(tmp_path, DRIVEN, more), tmp_path / "whole.h5")
     with pytest.raises(StoppedError):
-        simulate(make(tmp_path, DRIVEN), tmp_path / "out.h5", listener=after(60))
+        simulate(make(tmp_path, DRIVEN), tmp_path / "out.h5", stop=after(60))
     resume(tmp_path / "out.h5", overrides=more)
     # The motion of earlier frames is not in the file: it is evaluated, where a run has the
     # derivative of its dense output; docs/method.md has their difference, 0.4 % seen here.
@@ -262,7 +254,7 @@ def test_fields_that_are_added_are_there_for_all_frames(tmp_path):
 def test_other_changes_are_refused_with_the_difference(tmp_path, change, words):
     path = tmp_path / "out.h5"
     with pytest.raises(StoppedError):
-        simulate(make(tmp_path, DRIVEN, ["time.end=2e-3"]), path, listener=after(5))
+        simulate(make(tmp_path, DRIVEN, ["time.end=2e-3"]), path, stop=after(5))
     before = path.read_bytes()
     with pytest.raises(CaseError, match=words):
         resume(path, overrides=[change])
@@ -273,7 +265,7 @@ def test_other_changes_are_refused_with_the_difference(tmp_path, change, words):
 def test_what_cannot_be_computed_for_earlier_frames_is_refused(tmp_path):
     path = tmp_path / "out.h5"
     with pytest.raises(StoppedError):
-        simulate(make(tmp_path, PLANAR), path, listener=after(5))
+        simulate(make(tmp_path, PLANAR), path, stop=after(5))
     with pytest.raises(CaseError, match="have no director, so force cannot be computed"):
         resume(path, overrides=["output.fields=[position, force]"])
 
@@ -286,7 +278,7 @@ def test_the_command_goes_on_and_says_so(tmp_path):
     path = tmp_path / "out.h5"
     simulate(make(tmp_path, PLANAR), tmp_path / "whole.h5")
     with pytest.raises(StoppedError):
-        simulate(make(tmp_path, PLANAR), path, listener=after(5))
+        simulate(make(tmp_path, PLANAR), path, stop=after(5))
     done = call("resume", path)
     assert (done.exit_code, done.stdout) == (0, "")
     assert "finished: 17 frames" in done.stderr

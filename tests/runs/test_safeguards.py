@@ -73,7 +73,7 @@ def test_frames_of_fixed_steps_are_those_of_their_times(tmp_path):
 def test_the_flow_of_a_run_that_did_not_end_is_there(tmp_path):
     with pytest.raises(StoppedError):
         simulate(make(tmp_path, PLANAR.replace("[position]", "[position, director]")),
-                 tmp_path / "out.h5", listener=after(6))  # fmt: skip
+                 tmp_path / "out.h5", stop=after(6))  # fmt: skip
     with h5py.File(tmp_path / "out.h5", "r+") as file:
         file["runtime"].attrs["spectral_radius"] = np.nan  # as after a kill
         file.attrs["status"] = np.bytes_("running")
@@ -91,7 +91,7 @@ def test_a_checkpoint_that_is_ahead_of_the_frames_is_left(tmp_path):
     for steps in range(60, 90):  # until the last step was one with a frame
         if older == newer:
             with pytest.raises(StoppedError):
-                simulate(make(tmp_path, DRIVEN), path, overwrite=True, listener=after(steps))
+                simulate(make(tmp_path, DRIVEN), path, overwrite=True, stop=after(steps))
             with h5py.File(path) as file:
                 older, newer = sorted(int(file[f"checkpoint/{slot}/frames"][()]) for slot in "ab")
     with h5py.File(path, "r+") as file:

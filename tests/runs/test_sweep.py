@@ -64,6 +64,33 @@ def test_lists_make_a_grid_and_single_values_hold_for_all(here):
     assert not (here / "sweep").exists()
 
 
+def test_expressions_in_lists_and_tables_are_their_numbers(here):
+    """The folders, the table and the axis of a plot have numbers; a new parameter may be swept."""
+    flagellum, turns = CONFIGS / "flagellum.yaml", "parameters.phi=[0, pi/2, pi]"
+    plan = make_plan(flagellum, [turns, "parameters.n=3", "time.end=n*period"], None, "sweep")
+    assert [run.values["parameters.phi"] for run in plan.runs] == [0, np.pi / 2, np.pi]
+    assert plan.runs[1].name == "phi=1.5707963267948966"
+    assert plan.runs[0].data["time"]["end"] == 3 * (2 * np.pi / 400)
+    (here / "t.csv").write_text("parameters.sigma,time.end\n200,4*period\n50*pi,2*pi/sigma\n")
+    runs = make_plan(flagellum, [], "t.csv", "sweep").runs
+    assert [run.values["time.end"] for run in runs] == [
+        4 * (2 * np.pi / 200),
+        2 * np.pi / (50 * np.pi),
+    ]
+    assert load_case(flagellum, ["parameters.sigma=200"]).time.end == 5 * (2 * np.pi / 200)
+
+
+def test_a_sweep_over_rods_like_another(here):
+    two = CONFIGS / "two_flagella.yaml"
+    plan = make_plan(
+        two, ["rods.right.parameters.phi=[0, pi]", "rods.left.shape.points=20"], None, "s"
+    )
+    assert [run.data["rods"]["right"]["parameters"]["phi"] for run in plan.runs] == [0, np.pi]
+    assert {run.data["rods"]["right"]["shape"]["points"] for run in plan.runs} == {20}
+    plan.runs[1].prepare()
+    assert load_case(plan.runs[1].case).resolved() == plan.runs[1].data
+
+
 def test_entries_that_are_lists_or_mappings(here):
     settings = ["rods.ring.strain_twist=[[1.2, 0, 0.3], ['0.4*sin(s)', 0, 0.3]]",
                 "fluid.epsilon=[{spacings: 5}, 0.37]"]  # fmt: skip

@@ -253,9 +253,9 @@ def test_schema_knows_the_unions_and_describes_every_key():
     definitions = case_schema()["definitions"]
     epsilon = definitions["Fluid"]["properties"]["epsilon"]["oneOf"]
     assert {"$ref": "#/definitions/Spacings"} in epsilon
-    assert {"exclusiveMinimum": 0, "type": "number"} in epsilon
+    assert {"exclusiveMinimum": 0, "type": ["number", "string"]} in epsilon
     bending = definitions["Moduli"]["properties"]["bending"]["oneOf"]
-    assert [member["type"] for member in bending] == ["number", "array"]
+    assert [member["type"] for member in bending] == [["number", "string"], "array"]
     entry = definitions["Rod"]["properties"]["strain_twist"]["items"][0]["oneOf"]
     assert [member["type"] for member in entry] == ["number", "string"]
     assert definitions["Fluid"]["required"] == ["viscosity", "epsilon"]

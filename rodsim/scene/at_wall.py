@@ -1,0 +1,45 @@
+"""What a plane wall asks of a scene: all of it lies above."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from rodsim.errors import Problem
+
+RADII = {"algebraic7": np.exp(-0.5), "algebraic9": np.exp(-1.0)}  # of a rod, over epsilon
+
+
+def below_wall(case, scene) -> Iterator[Problem]:
+    """Yield a problem for each rod, and for the tracers, that are not above the wall."""
+    if scene.wall is None:
+        return
+    z = scene.initial.position[2]
+    for rod in scene.rods:
+        k = int(np.argmin(z[rod.nodes]))
+        lowest = z[rod.first + k]
+        if lowest <= scene.wall:
+            reason = f"point {k} is at z = {lowest:.6g}: must be above the wall, z = {scene.wall:g}"
+            yield case.source.problem(("rods", rod.name, "shape"), reason)
+    tracer = scene.initial.tracer[2]
+    if (tracer < scene.wall).any():
+        reason = f"one is at z = {tracer.min():.6g}, below the wall, z = {scene.wall:g}"
+        yield case.source.problem(("tracers",), reason)
+
+
+def near_wall(case, scene) -> Iterator[Problem]:
+    """Yield a warning for each rod that starts closer to the wall than epsilon."""
+    if scene.wall is None:
+        return
+    height = scene.initial.position[2] - scene.wall
+    for rod in scene.rods:
+        k = int(np.argmin(height[rod.nodes]))
+        lowest = height[rod.first + k]
+        if lowest < scene.epsilon:
+            reason = (
+                f"point {k} is {lowest:.4g} above the wall, closer than epsilon = "
+                f"{scene.epsilon:.4g}: a rod is about {RADII[scene.blob]:.2g} epsilon thick, and "
+                "lubrication is not resolved"
+            )
+            yield case.source.problem(("rods", rod.name, "shape"), reason)
