@@ -61,8 +61,8 @@ class TooLong(Exception):
 class Clock(Listener):
     """Stops a run that hangs; keeps how it ended."""
 
-    def __init__(self):
-        self.end = perf_counter() + MOST_SECONDS
+    def __init__(self, patience: float):
+        self.end = perf_counter() + patience
         self.summary = Summary()
 
     def update(self, fraction, note):
@@ -76,7 +76,7 @@ class Clock(Listener):
         self.summary = summary
 
 
-def run(case, folder: Path, **time):
+def run(case, folder: Path, patience=MOST_SECONDS, **time):
     """Run a case as the command would; return (last position, summary, or the error)."""
     from rodsim.case import case_from_mapping
     from rodsim.errors import RodsimError
@@ -91,7 +91,7 @@ def run(case, folder: Path, **time):
     step = case["time"].get("step")
     count = round(case["time"]["end"] / step) if step else FRAMES
     case["output"] = {"interval": -(-count // FRAMES) * (step or case["time"]["end"] / FRAMES)}
-    clock, output = Clock(), folder / "out.h5"
+    clock, output = Clock(patience), folder / "out.h5"
     try:
         made = case_from_mapping(case, path=str(folder / "case.yaml"))
         simulate(made, output, overwrite=True, listener=clock)
@@ -132,21 +132,24 @@ def _short(error):
     return text if len(text) < 110 else text[:107] + "..."
 
 
-def fixed_step(case, method, limit, most, folder, reference, length) -> Cell:
+def fixed_step(case, method, limit, most, patience, folder, reference, length) -> Cell:
     """Run euler or rk4 at 0.9 of its limit, whole or a stretch of ``most`` evaluations."""
     end, steps = case["time"]["end"], int(np.ceil(case["time"]["end"] / (SHARE * limit)))
     stretch = METHODS[method].stages * steps > most
     step = end / steps
     count = most // METHODS[method].stages if stretch else steps
     settings = {"integrator": method, "step": step, "end": step * count}
-    done = cell(*run(case, folder, **settings), None if stretch else reference, length)
+    done = cell(*run(case, folder, patience, **settings), None if stretch else reference, length)
     if done.status == "finished" and stretch:
         return Cell("finished", evaluations=METHODS[method].stages * steps, stretch=True)
     return done
 
 
-def measure(case, methods, most) -> dict:
-    """Return a cell for each method, and the fastest rate of the scene."""
+def measure(case, methods, most, patience=MOST_SECONDS) -> dict:
+    """Return a cell for each method, and the fastest rate of the scene.
+
+    patience : seconds after which a run is stopped.
+    """
     from rodsim.case import case_from_mapping
     from rodsim.errors import RodsimError
     from rodsim.integrators.limits import stability
@@ -156,7 +159,9 @@ def measure(case, methods, most) -> dict:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         tolerance = case["time"]["tolerance"]
-        reference, _, failure = run(case, folder, tolerance=max(1e-12, TIGHTER * tolerance))
+        reference, _, failure = run(
+            case, folder, patience, tolerance=max(1e-12, TIGHTER * tolerance)
+        )
         reference = None if failure else reference
         plain = {key: value for key, value in case.items() if key != "table"}
         try:
@@ -167,11 +172,13 @@ def measure(case, methods, most) -> dict:
         cells = {"rate": limits.rate}
         for method in methods:
             if METHODS[method].adaptive:
-                cells[method] = cell(*run(case, folder), reference, length)
+                cells[method] = cell(*run(case, folder, patience), reference, length)
             else:
                 limit = limits.largest_steps[method]
                 few = min(most, max(100, int(MOST_PAIRS / scene.rods.points**2)))
-                cells[method] = fixed_step(case, method, limit, few, folder, reference, length)
+                cells[method] = fixed_step(
+                    case, method, limit, few, patience, folder, reference, length
+                )
         return cells
 
 

@@ -55,7 +55,8 @@ TAIL = """## Expressions
 Any number may be an expression of `pi` and the names in `parameters`, the entries of `strain_twist`
 of the arc length `s` and the time `t` as well, with `+ - * / ** %`, the comparisons `< <= > >=` and
 the functions {functions};
-`where(condition, a, b)` chooses; more in [numbers](numbers.md).
+`where(condition, a, b)` chooses, `arctan2(y, x)` is an angle, `heaviside(0)` is 1/2; more in
+[numbers](numbers.md).
 
 The first point of a rod is at s = 0; strain twist is taken at the
 middle of each segment. Nothing in a case file can run code.

@@ -14,6 +14,7 @@ import click
 
 import rodsim
 from rodsim.errors import RodsimError
+from rodsim.text import printable
 
 COMMANDS = (  # as the help lists them
     "new",
@@ -56,7 +57,7 @@ class _Group(click.Group):
         try:
             return super().invoke(ctx)
         except RodsimError as error:
-            click.echo(str(error), err=True)
+            click.echo(printable(str(error)), err=True)
             ctx.exit(error.exit_code)
         except KeyboardInterrupt:
             click.echo("interrupted", err=True)

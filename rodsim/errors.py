@@ -26,9 +26,13 @@ class Problem:
     unit: str = ""
 
     def __str__(self) -> str:
-        subject = self.key if self.value is None else f"{self.key} = {self.value}"
-        unit = f" ({self.unit})" if self.unit else ""
-        return ": ".join(part for part in (self.where, subject, self.reason) if part) + unit
+        subject = self.key if self.value is None else f"{self.key} = {self.value}{self.in_unit}"
+        return ": ".join(part for part in (self.where, subject, self.reason) if part)
+
+    @property
+    def in_unit(self) -> str:
+        """The unit as it stands behind a value."""
+        return f" ({self.unit})" if self.unit else ""
 
 
 class CaseError(RodsimError):

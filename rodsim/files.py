@@ -1,11 +1,14 @@
 """What kind of file a path is, told without the library that would read it; whole files."""
 
+import errno
 import os
 from contextlib import contextmanager
 from pathlib import Path
 
 from rodsim.errors import FileError
 
+DEFAULT_OUTPUT = "out.h5"
+LONGEST_NAME = 200  # others are made of it: of the lock, of the file while it is built
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
@@ -13,6 +16,14 @@ def has_hdf5_signature(path: Path) -> bool:
     """Return whether a file begins as HDF5 files do; raises OSError if it cannot be read."""
     with path.open("rb") as stream:
         return stream.read(len(HDF5_SIGNATURE)) == HDF5_SIGNATURE
+
+
+def reason_of(error: Exception) -> str:
+    """Return the system's words for why a file cannot be written, and not those of HDF5."""
+    number = getattr(error, "errno", None)
+    if number == errno.ENAMETOOLONG:
+        return f"its name is too long, use at most {LONGEST_NAME} characters"
+    return os.strerror(number) if number else str(error)
 
 
 @contextmanager

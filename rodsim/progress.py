@@ -5,6 +5,8 @@ from time import monotonic
 
 import click
 
+from rodsim.text import printable
+
 SECONDS_BETWEEN_LINES = 5.0
 BAR_STEPS = 1000
 
@@ -69,4 +71,5 @@ def make_progress(label: str, quiet: bool):
     """Return the progress display that suits stderr."""
     if quiet:
         return Silent()
+    label = printable(label)
     return Bar(label) if sys.stderr.isatty() else Lines(label)

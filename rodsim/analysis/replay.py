@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -59,7 +58,7 @@ class Replay:
         """``run``: what :func:`rodsim.open_trajectory` returns."""
         self.run = run
         self.scene = restore_scene(run)
-        time = json.loads(run.case_resolved)["time"]
+        time = run.case_data()["time"]
         self.rough = METHODS[time["integrator"]].adaptive and time["tolerance"] > EXACT
 
     @cached_property

@@ -25,6 +25,7 @@ ALONG_THE_RUN = np.arange(1, 200) / 200.0
 WHOLE = 1e-9  # relative; how near a multiple of the step must be
 NO_REST_STATE = 2.0
 COARSE = 1.0
+ABSURD = 1000.0  # times as many points
 THIN = 1.0 - 1e-9  # spacings in an epsilon: there the error is 0.3 %, docs/choosing.md
 
 
@@ -74,7 +75,8 @@ def check_strain_twist(
         largest, at = float(np.max(angle)), _where(s, times, np.argmax(angle))
         found = f"abs(Omega) ds = {largest:.4g} at {at}"
         if not largest <= NO_REST_STATE:
-            advice = "no rest state (the discrete strain is 2 sin(theta/2)/ds): use a smaller ds"
+            advice = "no rest state (the discrete strain is 2 sin(theta/2)/ds): "
+            advice += _finer("use a smaller ds", largest, "strain_twist")
             return [(("strain_twist",), f"{found}: above {NO_REST_STATE:g} there is {advice}")], []
         if largest > COARSE and not warnings:
             warnings = [(("strain_twist",), f"{found}: the rod is coarse: use a smaller ds")]
@@ -179,8 +181,16 @@ def _thin(case: Case) -> Iterator[Finding]:
         share = epsilon.spacings if isinstance(epsilon, Spacings) else epsilon / ds
         if share < THIN:
             reason = f"is {share:.3g} spacings of rod '{name}': fluid flows between its points"
-            yield ("fluid", "epsilon"), f"{reason}; use more points, 2 spacings in an epsilon"
+            advice = _finer("use more points, 2 spacings in an epsilon", 2.0 / share, "epsilon")
+            yield ("fluid", "epsilon"), f"{reason}; {advice}"
             return
+
+
+def _finer(advice: str, times: float, what: str) -> str:
+    """Return the advice to use more points, unless nobody would want so many times as many."""
+    if times < ABSURD:
+        return advice
+    return f"{times:.2g} times as many points would do: are the units of {what} and the rod right?"
 
 
 def _tracers(case: Case, rod_names: list[str]) -> Iterator[Finding]:
@@ -189,6 +199,6 @@ def _tracers(case: Case, rod_names: list[str]) -> Iterator[Finding]:
         if markers > MOST_POINTS:
             gigabytes = markers * BYTES_PER_POINT / 1e9
             yield ("tracers", name), f"{markers:.3g} markers would need about {gigabytes:.3g} GB"
-        if isinstance(group, Tube) and group.rod not in rod_names:
+        if isinstance(group, Tube) and rod_names and group.rod not in rod_names:
             hint = did_you_mean(group.rod, rod_names) or f": the rods are {', '.join(rod_names)}"
             yield ("tracers", name, "rod"), f"no such rod{hint}"

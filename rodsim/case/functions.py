@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+
+from rodsim.case.words import did_you_mean
 
 
 @dataclass(frozen=True)
@@ -58,3 +61,15 @@ FUNCTIONS: dict[str, Function] = {
     "max": Function("max", 2, None),
     "where": Function("where", 3, 3),
 }
+_LIBRARY = re.compile(r"\b(np|numpy|math|jnp)\.([A-Za-z_]\w*)")  # as people write it elsewhere
+
+
+def library_hint(text: str) -> str:
+    """Return what to write for the first ``np.sin`` in a text; empty where there is none."""
+    if not (found := _LIBRARY.search(text)):
+        return ""
+    library, name = found.groups()
+    if name in FUNCTIONS or name == "pi":
+        call = "(...)" if name in FUNCTIONS else ""
+        return f"write {name}{call}, without '{library}.'"
+    return f"there is no '{library}' here{did_you_mean(name, (*FUNCTIONS, 'pi'))}"

@@ -14,7 +14,7 @@ from functools import lru_cache, reduce
 
 import numpy as np
 
-from rodsim.case.functions import COMPARISONS, FUNCTIONS
+from rodsim.case.functions import COMPARISONS, FUNCTIONS, library_hint
 from rodsim.case.graph import Graph, Node
 from rodsim.case.words import clipped, did_you_mean
 
@@ -45,7 +45,7 @@ _WORDS = {
     "not": "'not' is not allowed: turn the comparison round",
     **{word: f"{word} is not a number" for word in ("True", "False", "None")},
 }
-_COMMA = "a comma is only allowed between the arguments of a function"
+_COMMA = "a comma is only allowed between the arguments of a function; decimals have a point"
 
 
 class ExpressionError(ValueError):
@@ -66,6 +66,8 @@ def parse(text: str) -> tuple[Node, ...]:
     if odd is not None:
         default = f"the character {clipped(odd[0])} is not allowed"
         raise ExpressionError(_ODD_CHARACTER_HINTS.get(odd[0], default))
+    if hint := library_hint(text):
+        raise ExpressionError(hint)
     reader, position = _Reader(), 0
     while match := _TOKEN.match(text, position):
         position = match.end()

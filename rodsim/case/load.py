@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import os
+import shlex
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
@@ -16,10 +17,12 @@ from rodsim.case.model import Case
 from rodsim.case.numbers import Numbers
 from rodsim.case.overrides import apply_overrides
 from rodsim.case.places import Place, named
+from rodsim.case.slips import below, section_slips
 from rodsim.case.source import Source
 from rodsim.case.words import did_you_mean
-from rodsim.case.yaml_text import Path, parse
+from rodsim.case.yaml_text import Path, compose
 from rodsim.errors import CaseError, Problem, UsageError
+from rodsim.files import HDF5_SIGNATURE
 
 LARGEST_FILE = 1_000_000  # bytes; a case is a few hundred
 MOST_PROBLEMS = 100
@@ -34,8 +37,8 @@ def load_case(path: str | os.PathLike, overrides: Iterable[str] = ()) -> Case:
         raise UsageError('overrides must be texts in a list, such as ["time.end=0.01"]')
     name = os.fspath(path)
     text = _read(name)
-    data, lines = parse(text, lambda line: f"{name}:{line}")
-    return _build(Source(name, text, tuple(overrides), data, lines, Place(Case)))
+    data, lines, problems = compose(text, lambda line: f"{name}:{line}")
+    return _build(Source(name, text, tuple(overrides), data, lines, Place(Case)), problems)
 
 
 def case_from_mapping(
@@ -46,7 +49,7 @@ def case_from_mapping(
     ``path`` stands for the file in messages. Raises CaseError as ``load_case`` does.
     """
     root = Place(Case)
-    return _build(Source(path, "", tuple(overrides), copy.deepcopy(dict(data)), {}, root))
+    return _build(Source(path, "", tuple(overrides), copy.deepcopy(dict(data)), {}, root), [])
 
 
 def _read(name: str) -> str:
@@ -57,9 +60,13 @@ def _read(name: str) -> str:
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
         reason = getattr(error, "strerror", None) or str(error)
         raise CaseError([Problem(name, "", None, f"cannot read: {reason}")]) from None
-    if len(data) > LARGEST_FILE:
+    if len(data) > LARGEST_FILE and not data.startswith(HDF5_SIGNATURE):
         reason = f"larger than {LARGEST_FILE} bytes: this is not a case file"
         raise CaseError([Problem(name, "", None, reason)])
+    if data.startswith(HDF5_SIGNATURE):
+        quoted = shlex.quote(name)
+        reason = f"is an output, not a case: go on with rodsim resume {quoted}, or see rodsim info"
+        raise CaseError([Problem(name, "", None, f"{reason} {quoted}")])
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -68,13 +75,14 @@ def _read(name: str) -> str:
         raise CaseError([Problem(f"{name}:{line}", "", None, reason)]) from None
 
 
-def _build(source: Source) -> Case:
+def _build(source: Source, problems: list[Problem]) -> Case:
     """Apply the overrides, validate each section, check across sections."""
     if not isinstance(source.data, dict):
         found = "is empty" if source.data is None else "has no keys"
         reason = f"the file {found}: a case needs fluid, rods and time (see 'rodsim new')"
         raise CaseError([Problem(source.where(()), "", None, reason)])
-    problems, late = apply_overrides(source, source.overrides)
+    wrong, late = apply_overrides(source, source.overrides)
+    problems = problems + wrong
     names = _rod_names(source)
     numbers = Numbers(source)
     if unmade := expand(source, numbers.scope):
@@ -127,10 +135,13 @@ def _validate(source: Source, numbers: Numbers) -> tuple[Case, list[Problem]]:
         return Case.model_validate(data), []
     except ValidationError as error:
         details = error.errors(include_url=False, include_input=False)
+    slips = section_slips(source)
     bad = [yaml_path(detail["loc"], source.data) for detail in details]
-    new = [d for d, path in zip(details, bad, strict=True) if path not in numbers.failed]
-    problems = list(dict.fromkeys(explain(detail, source) for detail in new[:MOST_PROBLEMS]))
-    return _valid_part(data, bad), problems
+    told = {*slips, *numbers.failed}
+    new = [d for d, path in zip(details, bad, strict=True) if path not in told]
+    new = [d for d in new if not below(yaml_path(d["loc"], source.data), slips)]
+    problems = [*slips.values(), *(explain(detail, source) for detail in new[:MOST_PROBLEMS])]
+    return _valid_part(data, bad), list(dict.fromkeys(problems))
 
 
 def _valid_part(data: dict, bad: list[Path]) -> Case:
@@ -169,7 +180,8 @@ def without_nulls(node: Any, place: Place | None) -> Any:
 
 def _rod_names(source: Source) -> list[str]:
     rods = source.value(("rods",))
-    return list(rods) if isinstance(rods, dict) else []
+    named_so = isinstance(rods, dict) and not section_slips(source)
+    return list(rods) if named_so else []
 
 
 def _in_order(problems: list[Problem]) -> list[Problem]:

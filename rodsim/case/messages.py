@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import math
+import re
 from dataclasses import replace
 from typing import Any
 
 from pydantic_core import ErrorDetails
 
-from rodsim.case.places import Place
-from rodsim.case.source import Source
-from rodsim.case.words import did_you_mean, one_of
+from rodsim.case.source import OVERRIDE, Source
+from rodsim.case.words import clipped, did_you_mean, one_of
 from rodsim.case.yaml_text import Path
 from rodsim.errors import Problem
 
 _NAME_RULE = "a name is made of letters, digits and _, and does not begin with a digit"
+_UNIT_RULE = "must be a short name of letters"
+_GLUED = re.compile(r"[A-Za-z_]\w*:[^\s:/].*")
 _BOUNDS = {
     "greater_than": "> {gt:g}",
     "greater_than_equal": ">= {ge:g}",
@@ -36,7 +39,11 @@ def explain(error: ErrorDetails, source: Source) -> Problem:
     if error["loc"][-1] == "[key]":
         reason = str(error["ctx"]["error"]) if kind == "value_error" else _NAME_RULE
         return replace(source.problem(path, reason), value=None, unit="")
-    return source.problem(path, _reason(kind, error, source.place(path), source.value(path)))
+    problem = source.problem(path, "")
+    rule, advice = _reason(kind, error, source, path)
+    if advice is None:  # about this value alone
+        return replace(problem, reason=rule)
+    return replace(problem, reason=f"{rule}{problem.in_unit}{advice}", unit="")
 
 
 def yaml_path(loc: tuple, data: Any) -> Path:
@@ -53,39 +60,51 @@ def yaml_path(loc: tuple, data: Any) -> Path:
     return tuple(path)
 
 
-def _reason(kind: str, error: ErrorDetails, place: Place | None, value: Any) -> str:
-    """Return what is wrong, in the user's words."""
+def _reason(kind: str, error: ErrorDetails, source: Source, path: Path) -> tuple[str, str | None]:
+    """Return the rule that is broken, read in the place's unit, and what to write instead.
+
+    The advice is None where the words are about the value and not about the place.
+    """
+    place, value = source.place(path), source.value(path)
     context, noun = error.get("ctx", {}), place.noun() if place else "something else"
     if kind == "missing":
-        return f"missing: needs {noun}"
+        return f"missing: needs {noun}", ""
     if kind == "value_error":
-        return str(context["error"])
+        return str(context["error"]), None
     if kind in _BOUNDS:
-        return f"must be {_BOUNDS[kind].format(**context)}"
+        return f"must be {_BOUNDS[kind].format(**context)}", ""
     if kind == "finite_number":
-        return "must be finite"
+        return "must be finite", ""
     if kind == "string_pattern_mismatch":
-        return "must be a short name of letters" if "A-Za-zµ" in context["pattern"] else _NAME_RULE
+        return (_UNIT_RULE if "A-Za-zµ" in context["pattern"] else _NAME_RULE), ""
     if kind == "literal_error":
-        return f"must be {noun}{did_you_mean(str(value), place.choices() if place else ())}"
+        return f"must be {noun}", did_you_mean(str(value), place.choices() if place else ())
     if kind in ("too_short", "string_too_short") and not value:
-        return "must not be empty"
-    return f"must be {noun}{_hint(noun, value)}"
+        return "must not be empty", ""
+    return f"must be {noun}", _hint(noun, value, source.where(path) == OVERRIDE)
 
 
-def _hint(noun: str, value: Any) -> str:
+def _hint(noun: str, value: Any, option: bool) -> str:
     """Return what to write instead, where it is plain."""
     if isinstance(value, float) and noun == "a whole number" and value.is_integer():
         return f": write {int(value)}"
-    if isinstance(value, str) and "number" in noun:
-        try:
-            float(value)
-        except ValueError:
-            return ""
+    if isinstance(value, str) and "number" in noun and _is_number(value):
         return ", without quotes"
+    if isinstance(value, str) and "mapping" in noun and _GLUED.fullmatch(value):
+        key, _, rest = value.partition(":")
+        return f": a blank must follow the colon: write '{key}: {clipped(rest)}'"
+    if isinstance(value, list) and "list" not in noun and option:
+        return ": one run has one value; rodsim sweep runs over a list"
     if noun == "text" and isinstance(value, int | float):
         return ": put it in quotes"
     return ""
+
+
+def _is_number(text: str) -> bool:
+    try:
+        return math.isfinite(float(text))
+    except ValueError:
+        return False
 
 
 def _wrong_kind(path: Path, source: Source) -> Problem:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from rodsim.case.expressions import ExpressionError, names_in
@@ -117,7 +117,8 @@ class Numbers:
         if reason is not None:
             if _WORD.fullmatch(text) and reason.startswith("unknown name"):
                 reason = self._no_parameter(path, text.strip(), scope)
-            self.problems.append(self.source.problem(path, reason))
+            problem = self.source.problem(path, reason)  # of a text, which is in no unit
+            self.problems.append(replace(problem, unit=""))
         if reason is not None or math.isnan(value):
             self.failed.add(path)
         else:
@@ -127,5 +128,6 @@ class Numbers:
         """Return what is wrong with a bare word in the place of a number."""
         place = self.source.place(path)
         wanted = f"must be {place.noun()}" if place else "must be a number"
+        wanted += self.source.problem(path, "").in_unit
         hint = did_you_mean(word, scope.values)
         return f"there is no parameter '{clipped(word)}'{hint or f': {wanted}'}"

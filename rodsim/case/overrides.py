@@ -2,19 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from itertools import islice
 from typing import Any
 
 from rodsim.case.copies import inherited, is_late
 from rodsim.case.places import Place, named
-from rodsim.case.source import OVERRIDE, Source
+from rodsim.case.source import OVERRIDE, Source, child
 from rodsim.case.words import clipped, did_you_mean, dotted, one_of
 from rodsim.case.yaml_text import parse
 from rodsim.errors import CaseError, Problem
 
+MOST_PLACES = 3  # that a message names
+
 
 class _Refused(Exception):
     """Why an override cannot be applied."""
+
+
+class _UnknownKey(Exception):
+    """The model has no such key; ``hint`` names what it has there."""
+
+    def __init__(self, hint: str):
+        super().__init__(hint)
+        self.hint = hint
 
 
 def apply_overrides(source: Source, texts: Iterable[str]) -> tuple[list[Problem], list[str]]:
@@ -39,6 +50,11 @@ def apply_overrides(source: Source, texts: Iterable[str]) -> tuple[list[Problem]
                 late.append(text)
             else:
                 _put(source, parts, data)
+        except _UnknownKey as unknown:
+            found = _places(source.data, source.root, parts)
+            places = [f"'{dotted(path)}'" for path in islice(found, MOST_PLACES)]
+            longer = f": did you mean {one_of(places)}?" if places else unknown.hint
+            problems.append(Problem(OVERRIDE, clipped(key), None, f"unknown key{longer}"))
         except _Refused as refused:
             shown_key = clipped(key if equals else text)
             problems.append(Problem(OVERRIDE, shown_key, None, str(refused)))
@@ -88,8 +104,17 @@ def _step(node: Any, place: Place, part: str, path: tuple) -> tuple[str | int, P
     below = place.child(key, node)
     if below is None:
         keys = place.keys(node)
-        raise _Refused(f"unknown key{_near(part, keys)}")
+        raise _UnknownKey(_near(part, keys))
     return key, below
+
+
+def _places(node: Any, place: Place, end: tuple[str, ...], path: tuple = ()) -> Iterator[tuple]:
+    """Yield the paths of the model, with the names of this case, that end in some keys."""
+    if path[-len(end) :] == end and len(path) > len(end):
+        yield path
+    for key in list(node if isinstance(node, dict) else ()) if named(place) else place.keys(node):
+        if below := place.child(key, node):
+            yield from _places(child(node, key), below, end, (*path, key))
 
 
 def _is_parameters(place: Place) -> bool:

@@ -11,6 +11,7 @@ from rodsim.case.places import Place
 from rodsim.case.words import clipped, dotted, shown
 from rodsim.case.yaml_text import Lines, Path
 from rodsim.errors import Problem
+from rodsim.files import DEFAULT_OUTPUT
 from rodsim.units import unit_text
 
 OVERRIDE = "--set"
@@ -81,11 +82,16 @@ class Source:
             value = f"{value} (= {self.numbers[path]:.6g})"
         return Problem(self.where(path), dotted(path), value, reason, unit)
 
-    def command(self, *changes: str) -> str:
-        """Return the command that runs this case with more ``--set`` changes, for messages."""
+    def command(self, *changes: str, output: str = DEFAULT_OUTPUT) -> str:
+        """Return the command that runs this case with other ``--set`` changes, for messages.
+
+        A change takes the place of an earlier one of the same key.
+        """
         path = shlex.quote(self.path) if self.text else "CASE.yaml"  # else it has no file
-        sets = [f"--set {shlex.quote(text)}" for text in (*self.overrides, *changes)]
-        return " ".join(["rodsim run", path, *sets])
+        settings = {text.partition("=")[0].strip(): text for text in (*self.overrides, *changes)}
+        words = [f"--set {shlex.quote(text)}" for text in settings.values()]
+        words += [f"-o {shlex.quote(output)}"] if output != DEFAULT_OUTPUT else []
+        return " ".join(["rodsim run", path, *words])
 
 
 def _path(key_path: str | Path) -> Path:

@@ -6,6 +6,33 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import Any
 
+from rodsim.text import printable
+
+# What other programs and papers call it; each counts only where the word it stands for may stand.
+SYNONYMS = {
+    **dict.fromkeys(("circle", "circular", "loop", "torus", "annulus", "closed"), "ring"),
+    **dict.fromkeys(("line", "linear", "rod", "filament", "fiber", "fibre"), "straight"),
+    **dict.fromkeys(("spiral", "coil", "helical"), "helix"),
+    **dict.fromkeys(("wave", "sinus", "sinusoid", "sinusoidal"), "sine"),
+    **dict.fromkeys(("table", "txt", "csv", "h5", "hdf5", "restart"), "file"),
+    **dict.fromkeys(("mu", "eta", "dynamic_viscosity"), "viscosity"),
+    **dict.fromkeys(("dt", "timestep", "time_step", "step_size"), "step"),
+    **dict.fromkeys(("t_end", "tend", "tmax", "t_max", "t_final", "duration", "stop"), "end"),
+    **dict.fromkeys(("tol", "rtol", "atol", "accuracy"), "tolerance"),
+    **dict.fromkeys(("n", "nodes", "num_points", "n_points", "resolution"), "points"),
+    **dict.fromkeys(("ds", "dx"), "spacing"),
+    **dict.fromkeys(("curvature", "omega", "rest_curvature"), "strain_twist"),
+    **{f"a{name}": f"arc{name}" for name in ("sin", "cos", "tan", "tan2")},
+    **dict.fromkeys(("ln", "log10"), "log"),
+    **dict.fromkeys(("unit_step", "theta"), "heaviside"),
+    **dict.fromkeys(("if", "iif", "piecewise"), "where"),
+    **dict.fromkeys(("rk", "runge_kutta"), "rk4"),
+    "fabs": "abs",
+    "sgn": "sign",
+    "minimum": "min",
+    "maximum": "max",
+    "forward_euler": "euler",
+}
 LONGEST_WORD = 60  # comparing words is quadratic; nobody mistypes longer names than this
 LONGEST_VALUE = 60
 LONGEST_CIRCLE = 12  # names shown
@@ -16,6 +43,8 @@ def did_you_mean(word: str, choices: Iterable[str]) -> str:
     if len(word) > LONGEST_WORD:
         return ""
     lowered = {choice.lower(): choice for choice in choices}
+    if SYNONYMS.get(word.lower()) in lowered:
+        return f": did you mean '{lowered[SYNONYMS[word.lower()]]}'?"
     close = get_close_matches(word.lower(), lowered, n=1, cutoff=0.6)
     return f": did you mean '{lowered[close[0]]}'?" if close else ""
 
@@ -40,7 +69,7 @@ def circle(names: list[str], order: list[str]) -> tuple[str, str]:
 def clipped(text: str, most: int = LONGEST_VALUE) -> str:
     """Return the text on one line, without control characters, and not too long."""
     text = text if len(text) <= most else text[: most - 3] + "..."
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    return printable(text).replace("\n", "\\n")
 
 
 def dotted(path: Iterable[str | int]) -> str:

@@ -21,6 +21,7 @@ from rodsim.errors import CaseError, Problem
 _Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 # all but YAML's printable characters
 _NOT_YAML = re.compile("[^\t\n\r -~\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_GLUED = re.compile(r"[A-Za-z_]\w*:[^\s:/]")
 DEEPEST = 30
 TOO_DEEP = f"nested deeper than {DEEPEST} levels"
 MOST_PROBLEMS = 100
@@ -36,6 +37,7 @@ class _Container:
     value: dict | list
     path: Path
     key: str | None = None  # of a mapping, between a key and its value
+    glued: Any = None  # the value of {spacings:4}, where a blank is missing after the colon
 
     @property
     def wants_key(self) -> bool:
@@ -53,9 +55,11 @@ class _Composer:
     stack: list[_Container] = field(default_factory=list)
     lines: Lines = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
+    broken: bool = False  # the data are not what was meant: checking them would only mislead
 
-    def note(self, event: yaml.Event, reason: str, path: Path = ()) -> None:
+    def note(self, event: yaml.Event, reason: str, path: Path = (), broken: bool = True) -> None:
         """Remember a problem; composing goes on."""
+        self.broken |= broken
         place, key = self.where(line_of(event.start_mark)), dotted((*self.prefix, *path))
         self.problems.append(Problem(place, key, None, reason))
         if len(self.problems) >= MOST_PROBLEMS:
@@ -111,14 +115,28 @@ class _Composer:
         if event.implicit[0] and event.value == "<<":
             self.note(event, "merge keys (<<) are not supported in case files", container.path)
         elif event.implicit[0] and not isinstance(plain_scalar(event.value), str):
-            self.note(event, f"the key {clipped(event.value)} must be text", container.path)
-        path = (*container.path, event.value)
-        if event.value in container.value:
+            number = isinstance(plain_scalar(event.value), int | float)
+            hint = "; is it a decimal comma? decimals have a point" if number else ""
+            self.note(event, f"the key {clipped(event.value)} must be text{hint}", container.path)
+        key = self._without_value(event)
+        path = (*container.path, key)
+        if key in container.value:
             first = self.where(self.lines[path])
-            self.note(event, f"duplicate key: first given at {first}", path)
-        container.key = event.value
-        container.value[event.value] = None
+            self.note(event, f"duplicate key: first given at {first}", path, broken=False)
+        container.key = key
+        container.value[key] = None
         self.lines[path] = line_of(event.start_mark)
+
+    def _without_value(self, event: yaml.ScalarEvent) -> str:
+        """Return the key alone of ``spacings:4``, which YAML takes for a key without a value."""
+        if not (event.implicit[0] and _GLUED.match(event.value)):
+            return event.value
+        key, _, value = event.value.partition(":")
+        container = self.stack[-1]
+        reason = f"a blank must follow the colon: write '{clipped(key)}: {clipped(value)}'"
+        self.note(event, reason, (*container.path, key), broken=False)
+        container.glued = plain_scalar(value)
+        return key
 
     def _open(self, event: yaml.CollectionStartEvent) -> None:
         if len(self.stack) >= DEEPEST:
@@ -137,7 +155,8 @@ class _Composer:
         else:
             container = self.stack[-1]
             path = (*container.path, container.key)
-            container.value[container.key], container.key = value, None
+            value = container.glued if value is None else value
+            container.value[container.key], container.key, container.glued = value, None, None
             line = self.lines[path]  # that of the key, already there
         self.lines[path] = line
         return path
@@ -154,6 +173,20 @@ def parse(text: str, where: Callable[[int], str], prefix: Path = ()) -> tuple[An
     ``where`` makes the place shown in a problem from a line number, ``prefix`` starts its key.
     Raises CaseError with every problem found, if any.
     """
+    data, lines, problems = compose(text, where, prefix)
+    if problems:
+        raise CaseError(problems)
+    return data, lines
+
+
+def compose(
+    text: str, where: Callable[[int], str], prefix: Path = ()
+) -> tuple[Any, Lines, list[Problem]]:
+    """Return what ``parse`` does, and the problems that leave the data as they were meant.
+
+    Those are duplicate keys, of which the last counts, and blanks missing after a colon. Raises
+    CaseError with every problem found where there are others.
+    """
     composer = _Composer(where, prefix)
     try:
         _refuse_odd_characters(text)
@@ -164,9 +197,10 @@ def parse(text: str, where: Callable[[int], str], prefix: Path = ()) -> tuple[An
         reason = _syntax_reason(error, text)
         path = (*prefix, *composer.open_path()) if reason == TOO_DEEP else prefix
         composer.problems.append(Problem(where(line_of(mark)), dotted(path), None, reason))
-    if composer.problems:
+        composer.broken = True
+    if composer.broken:
         raise CaseError(composer.problems)
-    return composer.root, composer.lines
+    return composer.root, composer.lines, composer.problems
 
 
 def _refuse_odd_characters(text: str) -> None:
@@ -191,7 +225,11 @@ def _syntax_reason(error: yaml.YAMLError, text: str) -> str:
     if mark is not None and text[mark.index : mark.index + 1] == "\t":
         hint = "indent with spaces, not tabs: "
     elif "mapping values are not allowed" in words:
+        before = text[: mark.index].splitlines()[-2:] if mark else []
+        glued = [line.strip() for line in before if _GLUED.match(line.strip())]
         hint = "a ':' too many, or an indent that does not fit: "
+        if glued:
+            hint = f"a blank must follow the colon in '{clipped(glued[0])}': "
     elif "did not find expected" in words:
         hint = "check indents, commas, quotes and brackets: "
     return f"not valid YAML: {hint}{words}{begun}"

@@ -4,6 +4,8 @@ from pathlib import Path
 
 import click
 
+from rodsim.text import printable
+
 STILLS = (".png", ".pdf", ".svg")  # pictures
 set_option = click.option(
     "--set",
@@ -45,9 +47,14 @@ def load(path, overrides):
     return load_case(path, overrides)
 
 
+def say(text, err=True) -> None:
+    """Print text that can have come from a file; results with ``err=False``."""
+    click.echo(printable(str(text)), err=err)
+
+
 def warn(text) -> None:
     """Say what looks wrong but does not stop the command."""
-    click.echo(f"warning: {text}", err=True)
+    say(f"warning: {text}")
 
 
 def say_warnings(case) -> None:
@@ -85,4 +92,4 @@ def written_path(path, suffixes):
 def say_written(path, replaced, quiet=False) -> None:
     """Say which file a command has written, and whether another one was there."""
     if not quiet:
-        click.echo(f"wrote {path}{', in place of an earlier one' if replaced else ''}", err=True)
+        say(f"wrote {path}{', in place of an earlier one' if replaced else ''}")

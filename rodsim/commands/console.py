@@ -1,9 +1,7 @@
 """What a terminal shows of a run, and what stops it: the listener of ``run`` and ``resume``."""
 
-import click
-
 from rodsim.commands import reports
-from rodsim.commands.common import warn
+from rodsim.commands.common import say, warn
 from rodsim.progress import make_progress
 from rodsim.run.listener import Listener
 from rodsim.run.stopping import Stopper
@@ -60,4 +58,4 @@ class Console(Listener):
 
     def _say(self, text):
         if not self.quiet:
-            click.echo(text, err=True)
+            say(text)

@@ -8,6 +8,7 @@ from rodsim.commands.common import (
     case_argument,
     load,
     prepare_numba,
+    say,
     say_warnings,
     set_option,
     threads_option,
@@ -67,7 +68,7 @@ def converge(case_path, axes, report, overrides, threads, quiet):
     from rodsim.scene.build import build_scene
 
     plain = build_scene(load(case_path, (*overrides, "tracers=null")))
-    ensure_compiled(plain, lambda line: quiet or click.echo(line, err=True))
+    ensure_compiled(plain, lambda line: quiet or say(line))
     from rodsim.convergence import report as reporting
     from rodsim.convergence.study import Study
     from rodsim.output.paths import set_aside
@@ -99,11 +100,11 @@ def _show(study, table, picture):
     from rodsim.errors import UsageError
     from rodsim.plotting.convergence import plot_study
 
-    click.echo(reporting.text(study))
+    say(reporting.text(study), err=False)
     written = [str(table)]
     try:
         plot_study(study, picture)
         written.append(str(picture))
     except UsageError as error:
         warn(error)
-    click.echo(f"wrote {' and '.join(written)}", err=True)
+    say(f"wrote {' and '.join(written)}")

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from rodsim.commands.common import STILLS, output_argument, written_path
+from rodsim.commands.common import STILLS, output_argument, say, written_path
 
 
 @click.command()
@@ -24,7 +24,7 @@ def energy(output, kelvin, csv_path, plot_path):
     if plot_path:
         written_path(plot_path, STILLS)
     table = energy_table(output, kelvin)
-    click.echo(table.text())
+    say(table.text(), err=False)
     if csv_path:
         table.write_csv(csv_path)
     if plot_path:

@@ -8,6 +8,7 @@ from rodsim.commands.common import (
     STILLS,
     output_argument,
     prepare_numba,
+    say,
     say_written,
     threads_option,
     warn,
@@ -144,7 +145,7 @@ def _say_miss(run, replay, paths, quiet):
     if paths.miss[worst] > TRUSTED * replay.scene.epsilon:
         warn(f"{text}: start later (--at), or run with a shorter output.interval")
     elif not quiet:
-        click.echo(text, err=True)
+        say(text)
 
 
 def _frame(run, asked, default, quiet):
@@ -159,7 +160,7 @@ def _frame(run, asked, default, quiet):
     frame = nearest_frame(run.time, asked, run.units["time"])
     if run.time[frame] != asked and not quiet:
         unit = run.units["time"]
-        click.echo(f"t = {run.time[frame]:g} {unit} is the frame nearest to {asked:g}", err=True)
+        say(f"t = {run.time[frame]:g} {unit} is the frame nearest to {asked:g}")
     return frame
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from rodsim.commands.common import is_output, load, prepare_numba, say_warnings, set_option
+from rodsim.commands.common import is_output, load, prepare_numba, say, say_warnings, set_option
 
 
 @click.command()
@@ -16,11 +16,11 @@ def info(path, overrides, check):
     from rodsim.commands import reports
 
     if is_output(path):
-        click.echo(reports.describe_output(path))
+        say(reports.describe_output(path), err=False)
         if check:
-            click.echo(reports.check_output(path))
+            say(reports.check_output(path), err=False)
         return
     case = load(path, overrides)
     say_warnings(case)
     prepare_numba()
-    click.echo(reports.describe_case(case))
+    say(reports.describe_case(case), err=False)

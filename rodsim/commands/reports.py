@@ -18,6 +18,8 @@ from rodsim.scene.build import build_scene
 from rodsim.scene.restore import restore_case, stored_diameter
 from rodsim.units import unit_text
 
+MOST_RODS = 50  # described one by one
+
 
 def describe_case(case, refuse=False) -> str:
     """Return the resolved scene, its fastest rate, and the stable step of every integrator.
@@ -138,9 +140,11 @@ def describe_output(path) -> str:
             f"{run.frames} of {len(run.planned)} frames, {last}",
             f"written by rodsim {run.version}, {run.created}; format {run.format}",
         ]
-        for rod in run.rods:
+        for rod in run.rods[:MOST_RODS]:
             kind = "closed" if rod.closed else "open"
             lines.append(f"rod {rod.name}: {rod.count} points, {kind}, spacing {rod.spacing:g}")
+        if len(run.rods) > MOST_RODS:
+            lines.append(f"and {len(run.rods) - MOST_RODS} more rods")
         lines += _endings(run)
         lines.append(f"fields: {', '.join(run.fields)}")
         lines.append(f"observables: {', '.join(run.observables)}")

@@ -6,6 +6,7 @@ from rodsim.commands.common import (
     max_wall_option,
     output_argument,
     prepare_numba,
+    say,
     set_option,
     threads_option,
 )
@@ -30,7 +31,7 @@ def resume(output, overrides, threads, max_wall, quiet):
     with open_past(output, overrides) as past:
         case, complete = past.case, past.complete
     if complete:
-        quiet or click.echo(f"{output}: is finished; a later end: --set time.end=...", err=True)
+        quiet or say(f"{output}: is finished; a later end: --set time.end=...")
         return
     with Console(output, quiet, max_wall).about(case, output.name) as console:
         resume(output, overrides=overrides, threads=threads, listener=console)

@@ -9,10 +9,12 @@ from rodsim.commands.common import (
     load,
     max_wall_option,
     prepare_numba,
+    say,
     say_warnings,
     set_option,
     threads_option,
 )
+from rodsim.files import DEFAULT_OUTPUT
 
 
 @click.command()
@@ -21,7 +23,7 @@ from rodsim.commands.common import (
     "-o",
     "--output",
     type=click.Path(path_type=Path, dir_okay=False),
-    default="out.h5",
+    default=DEFAULT_OUTPUT,
     show_default=True,
     help="Output file; one that exists is renamed to out.1.h5, ...",
 )
@@ -40,7 +42,7 @@ def run(case_path, output, overrides, threads, max_wall, overwrite, force, dry_r
     if dry_run:
         from rodsim.commands import reports
 
-        click.echo(reports.describe_case(case, refuse=not force))
+        say(reports.describe_case(case, refuse=not force), err=False)
         return
     from rodsim.commands.console import Console
     from rodsim.run.simulate import simulate

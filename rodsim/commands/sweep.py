@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from rodsim.commands.common import case_argument, prepare_numba, set_option
+from rodsim.commands.common import case_argument, prepare_numba, say, set_option
 
 _FILE, _FOLDER = (click.Path(path_type=Path, dir_okay=d, file_okay=not d) for d in (False, True))
 
@@ -66,7 +66,7 @@ def sweep(case_path, overrides, table, folder, jobs, threads, scheduler, only_li
     finally:
         folder.mkdir(parents=True, exist_ok=True)
         summary.write(table_path)
-        click.echo(summary.text())
+        say(summary.text(), err=False)
         for x, y, path in pictures:
             _draw(summary, x, y, path)
     summary.check()
@@ -104,7 +104,7 @@ def _compile(left, quiet):
     for run in left:
         with suppress(RodsimError):  # which that run will report
             scene = build_scene(load_case(run.case))
-            ensure_compiled(scene, lambda line: quiet or click.echo(line, err=True))
+            ensure_compiled(scene, lambda line: quiet or say(line))
 
 
 @contextmanager

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from rodsim.commands.common import load, say_warnings, set_option
+from rodsim.commands.common import load, say, say_warnings, set_option
 from rodsim.errors import RodsimError
 
 
@@ -24,9 +24,9 @@ def validate(ctx, cases, overrides):
 
             build_scene(case)
         except RodsimError as error:
-            click.echo(str(error), err=True)
+            say(error)
             code = max(code, error.exit_code)
         else:
             say_warnings(case)
-            click.echo(f"{path}: valid")
+            say(f"{path}: valid", err=False)
     ctx.exit(code)

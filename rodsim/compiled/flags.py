@@ -13,22 +13,16 @@ wrap-around of negative indices to each access, and LLVM then gives up vectorisi
 
 from functools import partial
 
-import numba
 import numpy as np
 from llvmlite import ir
-from numba import cfunc, njit, types
+from numba import cfunc, types
 from numba.extending import intrinsic
 
+from rodsim.compiled import threads
+from rodsim.compiled.cache import cached_njit, keeps
 from rodsim.compiled.kernels import interpreted, jit_is_off
-from rodsim.compiled.settings import load_tbb
 
-# A function from the cache can hold parallel code without Numba knowing it: the threading layer
-# must be there before it is loaded, or LLVM ends the process: "Symbol not found: allocate_sched".
-try:
-    numba.get_num_threads()
-except ValueError:  # tbb is asked for, and that of pip is not where the system looks
-    load_tbb()
-    numba.get_num_threads()
+threads.start()
 
 VEC = "float64[::1]"
 MAT = "float64[:, ::1]"
@@ -43,12 +37,15 @@ ONE = np.uint64(1)
 
 SUM_FLAGS = {"reassoc", "contract", "arcp", "nsz"}
 
-kernel = partial(njit, cache=True, error_model="numpy")
-parallel_kernel = partial(njit, cache=True, error_model="numpy", parallel=True, fastmath=SUM_FLAGS)
+kernel = partial(cached_njit, error_model="numpy")
+parallel_kernel = partial(cached_njit, error_model="numpy", parallel=True, fastmath=SUM_FLAGS)
 unsigned = kernel  # without a signature: compiled with whatever calls it
-inline = partial(njit, cache=True, error_model="numpy", inline="always")
+inline = partial(cached_njit, error_model="numpy", inline="always")
 
-compile_part = cfunc(PART, cache=True, error_model="numpy")
+
+def compile_part(function):
+    """Compile a part, or read it from the cache."""
+    return cfunc(PART, cache=keeps(function), error_model="numpy")(function)
 
 
 @intrinsic

@@ -8,10 +8,18 @@ import platform
 import shutil
 import sys
 import tempfile
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
+from zlib import crc32
 
 import rodsim
+from rodsim.compiled.folder import private_folder, writable_folder
+from rodsim.errors import UsageError
+
+COMPILERS = ("numba", "llvmlite", "numpy")
+_not_kept = []
+LAYERS = ("default", "tbb", "omp", "workqueue", "safe", "threadsafe", "forksafe")
 
 
 def prepare() -> None:
@@ -19,12 +27,18 @@ def prepare() -> None:
 
     The cache lies in the user's own folder, so a read-only install works, under a name made of
     everything compiled code depends on: another version, source, Python, Numba or processor finds
-    nothing stale there. Variables that the user has set are left alone.
+    nothing stale there. Variables that the user has set are left alone. Raises UsageError for a
+    threading layer that there is not.
     """
     _allow_wide_vectors()
-    if "NUMBA_CACHE_DIR" not in os.environ:
-        os.environ["NUMBA_CACHE_DIR"] = str(_writable(cache_folder()))
-    if os.environ.get("NUMBA_THREADING_LAYER", "tbb") == "tbb":
+    _choose_cache()
+    layer = os.environ.get("NUMBA_THREADING_LAYER", "tbb")
+    if layer not in LAYERS:
+        raise UsageError(
+            f"NUMBA_THREADING_LAYER={layer}: there is none; unset it, or set one of "
+            + ", ".join(LAYERS)
+        )
+    if layer == "tbb":
         os.environ["NUMBA_THREADING_LAYER"] = "tbb" if load_tbb() else "default"
     _let_llvm_vectorise()
     # GNU OpenMP's idle threads spin: with a busy neighbour each sum then takes milliseconds.
@@ -73,22 +87,37 @@ def _let_llvm_vectorise():
     llvmlite.binding.set_option("rodsim", "-vectorize-memory-check-threshold=2000")
 
 
+def _choose_cache():
+    """Set the folder of compiled code, if the user has not; remember why it will not last."""
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    try:
+        folder = writable_folder(Path(given)) if given else private_folder(cache_folder())
+        os.environ["NUMBA_CACHE_DIR"] = str(folder)
+    except OSError as error:
+        _not_kept.append(f"{error.filename or given or cache_folder()}: {error.strerror}")
+        if not given:
+            _use_temporary_folder()
+
+
+def _use_temporary_folder():
+    """Keep compiled code for this process and those that it starts."""
+    try:
+        own = tempfile.mkdtemp(prefix="rodsim-")
+    except OSError:  # not even that: Numba then compiles without a cache
+        return
+    os.environ["NUMBA_CACHE_DIR"] = own
+    atexit.register(shutil.rmtree, own, ignore_errors=True)
+
+
+def why_not_kept() -> str:
+    """Return why compiled code is lost at the end of this process; empty if it is not."""
+    return _not_kept[-1] if _not_kept else ""
+
+
 def cache_folder() -> Path:
     """Return the folder for compiled code of exactly this installation on this processor."""
     home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     return Path(home) / "rodsim" / fingerprint()
-
-
-def _writable(folder):
-    """Return the folder, made if need be, or one for this process alone where that cannot be."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return folder
-    except OSError:
-        own = tempfile.mkdtemp(prefix="rodsim-")
-        atexit.register(shutil.rmtree, own, ignore_errors=True)
-        return own
 
 
 def load_tbb() -> bool:
@@ -108,10 +137,28 @@ def fingerprint() -> str:
     digest = hashlib.sha256(f"{rodsim.__version__} {rodsim.__file__}".encode())
     for source in sorted(Path(rodsim.__file__).parent.rglob("*.py")):
         digest.update(source.read_bytes())
-    versions = [version(name) for name in ("numba", "llvmlite", "numpy")]
+    versions = [version(name) for name in COMPILERS]
     asked = [os.environ.get(name) for name in ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES")]
     digest.update(f"{versions} {sys.version} {platform.machine()} {_processor()} {asked}".encode())
     return digest.hexdigest()[:16]
+
+
+@cache
+def machine() -> dict[str, str]:
+    """Return what the last bits of a result depend on: versions, and what the code is made for.
+
+    The processor as LLVM sees it, its name and a digest of its features.
+    """
+    import llvmlite.binding
+
+    try:
+        found = f"{llvmlite.binding.get_host_cpu_features().flatten()}"
+    except RuntimeError:  # LLVM does not know them on every system
+        found = ""
+    name = os.environ.get("NUMBA_CPU_NAME") or llvmlite.binding.get_host_cpu_name()
+    features = os.environ.get("NUMBA_CPU_FEATURES") or found
+    processor = f"{name[:22]} {crc32(features.encode()):08x}"
+    return {each: version(each) for each in COMPILERS} | {"processor": processor}
 
 
 def _processor():

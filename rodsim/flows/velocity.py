@@ -6,6 +6,7 @@ For notebooks and tests: arrays are (n, 3), one row per point. A run calls the k
 
 import numpy as np
 
+from rodsim.compiled.threads import computing
 from rodsim.errors import UsageError
 from rodsim.flows import free
 from rodsim.flows.blobs import BLOBS
@@ -56,7 +57,8 @@ def velocity(
     kernel = sums.velocity_kernel(_blob(blob), False, bool(angular))
     out = np.zeros((6 if angular else 3, targets.shape[1]))
     fluid = _positive(epsilon, "epsilon"), _positive(viscosity, "viscosity")
-    kernel(targets, sources, loads, *fluid, *height, out)
+    with computing():
+        kernel(targets, sources, loads, *fluid, *height, out)
     out[:, _below(targets, wall)] = np.nan
     return out[:3].T.copy(), (out[3:].T.copy() if angular else None)
 
@@ -75,8 +77,9 @@ def pressure(targets, sources, forces, epsilon, *, blob="algebraic7", wall=None,
     targets, sources, loads = _arrays(targets, sources, forces, torques)
     sums, height = _sums(wall, sources)
     out = np.zeros(targets.shape[1])
-    kernel = sums.pressure_kernel(_blob(blob))
-    kernel(targets, sources, loads, _positive(epsilon, "epsilon"), *height, out)
+    kernel, epsilon = sums.pressure_kernel(_blob(blob)), _positive(epsilon, "epsilon")
+    with computing():
+        kernel(targets, sources, loads, epsilon, *height, out)
     out[_below(targets, wall)] = np.nan
     return out
 

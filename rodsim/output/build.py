@@ -15,6 +15,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from rodsim.compiled.settings import machine
 from rodsim.errors import FileError
 from rodsim.output import layout
 from rodsim.output.checkpoint import allocate
@@ -153,9 +154,11 @@ def _add_series(file, plan):
 
 
 def _add_runtime(group):
+    text = f"S{layout.TEXT_BYTES}"
     for name, kind in layout.RUNTIME.items():
-        dtype = f"S{layout.TEXT_BYTES}" if kind is str else None
-        group.attrs.create(name, layout.UNKNOWN[kind], dtype=dtype)
+        group.attrs.create(name, layout.UNKNOWN[kind], dtype=text if kind is str else None)
+    for name, value in machine().items():
+        group.attrs.create(name, np.bytes_(value), dtype=text)
 
 
 def preallocated(group, name, shape, fill, dtype=np.float64) -> h5py.Dataset:

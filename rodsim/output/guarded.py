@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 
 import h5py
 import numpy as np
 
 from rodsim.errors import FileError
+from rodsim.output.packed import PACKING, what_is_wrong
 
-# Deflate packs a thousandfold at best: a dataset larger than that has no contents in this file,
-# and reading it would only fill the memory.
-PACKING = 2000
-OWN_FILTERS = {1, 2, 3, 4, 5, 6, 32000}  # deflate ... scale-offset, and LZF, which h5py brings
+CASES = (".yaml", ".yml")  # suffixes
 ATTRIBUTE_KINDS = {str: "", bool: "b", int: "iu", float: "f"}
 
 
@@ -24,12 +23,12 @@ class GuardedFile:
     """
 
     def __init__(self, path):
-        self.path = Path(path)
+        self.path, self._last = Path(path), ("", None)
         if not self.path.exists():
             raise FileError(f"{path}: no such file")
         try:
             if not (self.path.is_file() and h5py.is_hdf5(self.path)):
-                raise FileError(f"{path}: not an HDF5 file")
+                raise FileError(f"{path}: not an HDF5 file{_case_hint(self.path)}")
             self._file = h5py.File(self.path, "r", locking=False)
         except OSError as error:
             raise FileError(f"{path}: cannot be opened, damaged or cut short ({error})") from error
@@ -61,7 +60,9 @@ class GuardedFile:
 
     def attribute(self, name: str, key: str, kind: type, shape=()):
         """Return an attribute: ``kind`` is str, bool, int or float; an array if it has a shape."""
-        value = self._attribute(self._node(name), key)
+        if self._last[0] != name:  # attributes are read one after another
+            self._last = name, self._node(name)
+        value = self._attribute(self._last[1], key)
         if kind is str and isinstance(value, str):
             return value
         array = np.asarray(value)
@@ -109,7 +110,19 @@ class GuardedFile:
         """Check a dataset that is to be written: in one piece, as the run has made it."""
         self.array(name, kinds, shape, np.s_[:0] if shape else ())
         if self._dataset(name).chunks is not None:
-            raise FileError(f"{self.path}: {name} was packed by another program: a copy to read")
+            raise self._laid_out_anew(name)
+
+    def growing(self, name: str, kinds: str) -> None:
+        """Check a list that is to be lengthened."""
+        self.array(name, kinds, (None,), np.s_[:0])
+        if self._dataset(name).chunks is None:
+            raise self._laid_out_anew(name)
+
+    def _laid_out_anew(self, name):
+        return FileError(
+            f"{self.path}: {name} was laid out anew by another program (h5repack?), so it can be "
+            "read, and gone on with in a new copy: rodsim resume with a later --set time.end=..."
+        )
 
     def text(self, name: str) -> str:
         """Return a text dataset."""
@@ -142,18 +155,21 @@ class GuardedFile:
     def _check_storage(self, name, data):
         if data.external or data.is_virtual:
             raise self.damaged(f"{name} lies outside this file")
-        if _foreign_filter(data):
-            raise self.damaged(f"{name} is packed in a way that only a plug-in can read")
         stored = data.shape is not None and data.dtype.itemsize  # an impossible type fails here
         if not stored or data.nbytes > PACKING * data.id.get_storage_size():
             raise self.damaged(f"{name} is empty")
+        if wrong := what_is_wrong(data):
+            raise self.damaged(f"{name} {wrong}")
 
     def _node(self, name, kind=h5py.HLObject):
         """Walk to an object link by link."""
         node = self._file
         try:
             for part in filter(None, name.split("/")):
-                if not isinstance(node.get(part, getlink=True), h5py.HardLink):
+                link = node.get(part, getlink=True)
+                if link is None:
+                    raise self.damaged(f"{name} is missing")
+                if not isinstance(link, h5py.HardLink):
                     raise self.damaged(f"{name} is a link to elsewhere")
                 node = node[part]
         except (KeyError, AttributeError, TypeError, OSError, RuntimeError, ValueError) as error:
@@ -163,11 +179,11 @@ class GuardedFile:
         return node
 
 
-def _foreign_filter(data):
-    """Return whether HDF5 would have to look for a plug-in to read a dataset."""
-    properties = data.id.get_create_plist()
-    codes = {properties.get_filter(i)[0] for i in range(properties.get_nfilters())}
-    return not codes <= OWN_FILTERS
+def _case_hint(path):
+    """Return what to do where a case was given instead of its output."""
+    if path.suffix not in CASES or not path.is_file():
+        return ""
+    return f", but a case? First rodsim run {shlex.quote(str(path))}, then give its output"
 
 
 def _fits(found, expected):

@@ -63,6 +63,8 @@ RUNTIME = {
     "threads": int,
     "threading_layer": str,
 }
+# of /runtime too; files of older versions lack them
+MACHINE = ("numba", "llvmlite", "numpy", "processor")
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from operator import index
 
 import numpy as np
@@ -121,6 +122,16 @@ class Trajectory:
         """Return the newest whole state of the run, or None if there is none."""
         return read_checkpoint(self._file, self.frames)
 
+    def case_data(self) -> dict:
+        """Return the resolved case as plain data; raises FileError where that cannot be read."""
+        try:
+            data = json.loads(self.case_resolved)
+        except (ValueError, RecursionError) as error:
+            raise self._file.damaged(f"its case cannot be read ({error})") from error
+        if not isinstance(data, dict):
+            raise self._file.damaged("its case cannot be read (it has no keys)")
+        return data
+
     def _read_header(self):
         file = self._file
         try:
@@ -164,17 +175,26 @@ class Trajectory:
 
     def _read_rods(self):
         get = self._file.attribute
-        found = [(name, f"rods/{name}") for name in self._file.names("rods")]
-        found.sort(key=lambda rod: get(rod[1], "index", int))
-        rods, first = [], 0
-        for name, where in found:
-            start, count = get(where, "first", int), get(where, "count", int)
+        found = []
+        for name in self._file.names("rods"):
+            where = f"rods/{name}"
+            index, start, count = (get(where, key, int) for key in ("index", "first", "count"))
             closed, spacing = get(where, "closed", bool), get(where, "spacing", float)
             moduli = tuple(get(where, "moduli", float, (6,)).tolist())
-            if start != first or count < 1:
+            found.append((index, where, Rod(name, start, count, closed, spacing, moduli)))
+        found.sort(key=lambda rod: rod[0])
+        return self._checked(found)
+
+    def _checked(self, found):
+        """Return the rods of ``found`` (index, place, record); each begins where one ends."""
+        rods, first = [], 0
+        for _, where, rod in found:
+            if rod.first != first or rod.count < 1:
                 raise self._file.damaged(f"{where} does not follow the rod before it")
-            rods.append(Rod(name, start, count, closed, spacing, moduli))
-            first += count
+            if not all(0.0 < number < np.inf for number in (rod.spacing, *rod.moduli)):
+                raise self._file.damaged(f"{where} has a spacing or moduli that no rod can have")
+            rods.append(rod)
+            first += rod.count
         return Rods(rods)
 
     def _values(self, where, shape, frames=slice(None)):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import h5py
 import numpy as np
 
+from rodsim.compiled.settings import machine
 from rodsim.errors import FileError
 from rodsim.output import layout
 from rodsim.output.guarded import GuardedFile
@@ -28,6 +29,7 @@ def reopen(path, plan: Plan, lock) -> TrajectoryWriter:
         View(file["VTKHDF"]).show_all(plan.times[: writer.committed])
         file.attrs.modify("status", short("running"))
         file.flush()
+    writer.update_runtime(machine())
     return writer
 
 
@@ -90,7 +92,7 @@ def _check_layout(path, plan):
         for slot in file.names("checkpoint"):
             for name in file.names(f"checkpoint/{slot}"):
                 file.contiguous(f"checkpoint/{slot}/{name}", "fiub", None)
-        file.array("VTKHDF/Steps/Values", "f", (None,), np.s_[:0])
+        file.growing("VTKHDF/Steps/Values", "f")
         file.attribute("VTKHDF/Steps", "NSteps", int)
         stored = file.attributes("runtime")
         if not stored.keys() >= layout.RUNTIME.keys():

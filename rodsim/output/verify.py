@@ -17,6 +17,7 @@ def verify(run: Trajectory) -> list[str]:
     Every number of every committed frame is finite, times are those planned, steps do not
     decrease, triads are orthonormal, and a checkpoint is whole.
     """
+    run.case_data()
     found = []
     if not np.array_equal(run.time, run.planned[: run.frames]):
         found.append("the times of its frames are not those planned")

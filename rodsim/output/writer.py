@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 
 from rodsim.errors import FileError
-from rodsim.files import has_hdf5_signature
+from rodsim.files import has_hdf5_signature, reason_of
 from rodsim.output import build, layout
 from rodsim.output.build import abandoned, build_file, trim
 from rodsim.output.checkpoint import CheckpointWriter
@@ -81,8 +81,7 @@ class TrajectoryWriter:
         except (OSError, FileError) as error:
             lock.release()
             cause = error.__cause__ if isinstance(error.__cause__, OSError) else error
-            reason = getattr(cause, "strerror", None) or cause
-            raise FileError(f"{path}: cannot be written: {reason}") from error
+            raise FileError(f"{path}: cannot be written: {reason_of(cause)}") from error
         except BaseException:
             lock.release()
             raise
@@ -145,9 +144,11 @@ class TrajectoryWriter:
     def update_runtime(self, runtime: dict) -> None:
         """Set attributes of ``/runtime``: numbers and short texts by name."""
         with self.writing() as file:
+            attrs = file["runtime"].attrs
             for name, value in runtime.items():
-                value = short(value) if isinstance(value, str) else value
-                file["runtime"].attrs.modify(name, value)
+                if name in layout.MACHINE and name not in attrs:
+                    continue  # a file of an older rodsim: nothing may be added to what is there
+                attrs.modify(name, short(value) if isinstance(value, str) else value)
             file.flush()
 
     def sync(self) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 
 from rodsim.analysis.energy import energy_table
@@ -26,8 +24,8 @@ PANELS = 6
 def read_title(run) -> str:
     """Return the title of the case in a file, or an empty text."""
     try:
-        return str(json.loads(run.case_resolved).get("title", ""))
-    except (ValueError, AttributeError):
+        return str(run.case_data().get("title", ""))
+    except FileError:
         return ""
 
 

@@ -32,6 +32,7 @@ def _march(machine, state, recorder, listener):
     try:
         if recorder.next_frame == 0:
             recorder.initial(state)
+        watch.output = str(recorder.writer.path)
         for step in integrator.steps(state, end):
             watch.check(step)
             new = recorder.passed(step)

@@ -13,6 +13,7 @@ import numpy as np
 import rodsim
 from rodsim.case import Case, case_from_mapping
 from rodsim.case.words import shown
+from rodsim.compiled.settings import machine
 from rodsim.errors import CaseError, FileError, Problem
 from rodsim.output import CaseText, Trajectory, open_trajectory
 from rodsim.output.paths import OutputLock
@@ -61,10 +62,14 @@ class Past:
 
     def warnings(self):
         """Yield what may keep the result from being that of an uninterrupted run, bit for bit."""
-        if self.run.version != rodsim.__version__:
+        here = {"rodsim": rodsim.__version__, **machine()}
+        there = {"rodsim": self.run.version, **self.run.runtime}
+        known = [name for name in here if there.get(name, here[name]) != here[name]]
+        if known:
+            was, now = (", ".join(f"{name} {at[name]}" for name in known) for at in (there, here))
             yield (
-                f"{self.path} was written by rodsim {self.run.version}, this is "
-                f"{rodsim.__version__}: last digits can differ from those of one run"
+                f"{self.path} was written with {was}, this is {now}: last digits can differ from "
+                "those of one run"
             )
 
     def shape(self, name: str, shape):
@@ -129,10 +134,10 @@ def _read(path, run, overrides, lock):
     snapshot = run.checkpoint()
     if snapshot is None or not {"time", "position", "director", "force"} <= snapshot.keys():
         raise FileError(f"{path}: damaged: neither of its checkpoints is whole")
+    resolved = run.case_data()
     try:
-        resolved = json.loads(run.case_resolved)
         before = case_from_mapping(resolved, path=f"{path}: case")
-    except (ValueError, RecursionError, TypeError, CaseError) as error:
+    except (ValueError, TypeError, CaseError) as error:
         raise FileError(f"{path}: damaged: its case cannot be read ({error})") from error
     case = case_from_mapping(resolved, overrides, path=f"{path}: case")
     problems = [*_forbidden(path, before.resolved(), case.resolved()), *_not_computable(run, case)]

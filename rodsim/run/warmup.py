@@ -11,13 +11,14 @@ what was compiled holds the checksum of every file; where one does not fit, all 
 import json
 import os
 import sys
+import tempfile
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from time import perf_counter
 from zlib import crc32
 
 from rodsim.compiled.kernels import jit_is_off
-from rodsim.compiled.settings import fingerprint
+from rodsim.compiled.settings import fingerprint, why_not_kept
 from rodsim.processes import this_rodsim
 
 LIST = "compiled.json"
@@ -31,6 +32,12 @@ def ensure_compiled(scene, say) -> float:
     """
     if jit_is_off():
         return 0.0
+    reason = why_not_kept()
+    how = f"as at every run, for nothing can be kept ({reason})" if reason else "once"
+    compiling = f"compiling for this kind of scene, {how}; some seconds"
+    if "NUMBA_CACHE_DIR" not in os.environ:  # no folder at all: the run itself compiles
+        say(compiling)
+        return 0.0
     folder = Path(os.environ["NUMBA_CACHE_DIR"])
     kernels = sorted({part.where for part in scene.parts})
     # A folder that the user has set can be shared by several versions and installations.
@@ -39,7 +46,7 @@ def ensure_compiled(scene, say) -> float:
         return 0.0
     import subprocess  # what is compiled already has no use for it
 
-    say("compiling for this kind of scene, once; some seconds")
+    say(compiling)
     start = perf_counter()
     with suppress(OSError), _alone(folder):  # where nothing can be kept, the run itself compiles
         if not is_compiled(folder, kind):
@@ -62,9 +69,10 @@ def note_compiled(folder: Path, kind: str) -> None:
     kinds = {*_listed(folder)["kinds"], kind}
     codes = folder.rglob("*.nbc") if _is_ours(folder, kind) else ()
     files = {str(f.relative_to(folder)): crc32(f.read_bytes()) for f in codes}
-    new = folder / f"{LIST}.{os.getpid()}"
-    new.write_text(json.dumps({"kinds": sorted(kinds), "files": files}))
-    new.replace(folder / LIST)
+    text = json.dumps({"kinds": sorted(kinds), "files": files})
+    with tempfile.NamedTemporaryFile("w", dir=folder, prefix=LIST, delete=False) as new:
+        new.write(text)  # under a name that nobody can guess, so no link can be waiting there
+    os.replace(new.name, folder / LIST)
 
 
 def _is_ours(folder, kind):
@@ -100,7 +108,8 @@ def _clear(folder):
 def _alone(folder):
     """Hold a lock that the system takes back should this process die; none where it has none."""
     folder.mkdir(parents=True, exist_ok=True)
-    with (folder / "lock").open("w") as lock:
+    flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
+    with os.fdopen(os.open(folder / "lock", flags, 0o600), "w") as lock:
         with suppress(ImportError, OSError):
             import fcntl
 

@@ -4,8 +4,10 @@ import math
 
 import numpy as np
 
+from rodsim.case.check import ABSURD
 from rodsim.compiled.flags import MAT, TRIADS, kernel
 from rodsim.errors import DivergedError, StepFailure
+from rodsim.files import DEFAULT_OUTPUT
 from rodsim.integrators.limits import RateWatch
 from rodsim.integrators.step import Step
 from rodsim.scene.state import State
@@ -13,20 +15,22 @@ from rodsim.scene.state import State
 FARTHEST = 1e3  # lengths of the scene: no rod drives itself that far in a run that works
 
 
-def _fixed_step_remedy(case):
-    """Return the usual cause of a fixed step that fails, what to do, and the command for it."""
-    return (
-        "the fixed step is too long for this stiffness: halve time.step, or use integrator: rkc.\n"
-        f"Try: {case.source.command('time.integrator=rkc')}"
-    )
+def _fixed_step_remedy(case, system):
+    """Return the usual cause of a fixed step that fails and what to do, and the change for it."""
+    cause = "the fixed step is too long for this stiffness: halve time.step, or use integrator: rkc"
+    return cause, "time.integrator=rkc"
 
 
-def _adaptive_remedy(case):
+def _adaptive_remedy(case, system):
+    """Return the same for steps that follow the error."""
     finer = f"time.tolerance={max(0.1 * case.time.tolerance, 1e-13):.3g}"
-    return (
-        "the motion is beyond the resolution of the rods: use more points, or a smaller "
-        f"time.tolerance.\nTry: {case.source.command(finer)}"
-    )
+    scene = system.scene
+    share = scene.epsilon / scene.rods.spacing.min()
+    if 1.0 / ABSURD < share < ABSURD:
+        advice = "use more points, or a smaller time.tolerance"
+    else:
+        advice = f"check the units, epsilon is {share:.2g} spacings"
+    return f"the motion is beyond the resolution of the rods: {advice}", finer
 
 
 @kernel(f"boolean({MAT}, {TRIADS}, {MAT}, float64)")
@@ -47,9 +51,10 @@ class Watch:
 
     def __init__(self, case, system, integrator, radius=None):
         """``radius``: the SpectralRadius that follows the rate of a fixed step, or None."""
-        self.system = system
+        self.system, self._command = system, case.source.command
+        self.output = DEFAULT_OUTPUT  # what the command of a remedy writes
         fixed = not integrator.method.adaptive
-        self.remedy = _fixed_step_remedy(case) if fixed else _adaptive_remedy(case)
+        self.remedy = (_fixed_step_remedy if fixed else _adaptive_remedy)(case, system)
         self._rates = RateWatch(system, integrator, radius) if fixed and radius else None
         self.wall, initial = system.scene.wall, system.scene.initial.position
         self.centre = initial.mean(axis=1, keepdims=True)
@@ -112,7 +117,9 @@ class Watch:
         if point is not None:
             rod, k = self.system.scene.rods.locate(point)
             place = f", rod '{rod}', point {k}"
+        cause, change = self.remedy
         raise DivergedError(
             f"diverged in step {number}, after t = {before.time:.6g}{place}: {what}.\n"
-            f"Last good frame: {self.last_good_frame}. Usual cause: {self.remedy}"
+            f"Last good frame: {self.last_good_frame}. Usual cause: {cause}.\n"
+            f"Try: {self._command(change, output=self.output)}"
         )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 
 import numpy as np
@@ -46,7 +45,7 @@ def restore_scene(run) -> Scene:
 def restore_case(run) -> Case:
     """Return the case of a stored run, which has all its rods; FileError where it has not."""
     try:
-        case = case_from_mapping(json.loads(run.case_resolved), path=str(run.path))
+        case = case_from_mapping(run.case_data(), path=str(run.path))
         missing = {rod.name for rod in run.rods} - case.rods.keys()
         if missing:
             raise ValueError(f"it has no rod {', '.join(sorted(missing))}")

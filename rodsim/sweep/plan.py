@@ -15,6 +15,7 @@ import yaml
 
 from rodsim.case import load_case
 from rodsim.case.scalars import plain_scalar
+from rodsim.case.words import shown
 from rodsim.case.yaml_text import parse
 from rodsim.errors import CaseError, FileError, Problem, UsageError
 
@@ -89,10 +90,10 @@ def make_plan(case_path, settings, table, folder) -> Plan:
         (where, row | dict(zip(axes, chosen, strict=True)))
         for (where, row), *chosen in itertools.product(rows, *axes.values())
     ]
-    return _load(case_path, fixed, choices, Path(folder).absolute())
+    return _load(case_path, fixed, axes, choices, Path(folder).absolute())
 
 
-def _load(case_path, fixed, choices, folder):
+def _load(case_path, fixed, axes, choices, folder):
     """Load the case of every choice, all problems at once."""
     runs, units, problems = {}, {}, []
     for where, values in choices:
@@ -100,7 +101,8 @@ def _load(case_path, fixed, choices, folder):
         try:
             case = load_case(case_path, [*fixed, *settings])
         except CaseError as error:
-            problems += [_at_row(problem, where, values) for problem in error.problems]
+            found = [_one_bracket(problem, axes) for problem in error.problems]
+            problems += [_at_row(problem, where, values) for problem in found]
             continue
         units |= {key: case.source.unit(tuple(key.split("."))) for key in values}
         values = {key: case.source.number(key, value) for key, value in values.items()}
@@ -117,6 +119,15 @@ def _at_row(problem, where, values):
     """Return a problem of an override at the row of the table it came from."""
     from_row = where and problem.where == OPTION and problem.key.startswith(tuple(values))
     return replace(problem, where=where) if from_row else problem
+
+
+def _one_bracket(problem, axes):
+    """Return a problem that tells of the second bracket, where a list's entries became runs."""
+    values = axes.get(problem.key)
+    if values is None or problem.where != OPTION or not problem.reason.startswith("must be a list"):
+        return problem
+    advice = f"one run for each entry, and none is a list: write [{shown(values)}] for one value"
+    return replace(problem, value=shown(values), reason=f"{advice} that is this list")
 
 
 def _axes(settings):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import shlex
 import subprocess
@@ -27,7 +26,7 @@ def standing(run: Run) -> str:
 
     try:
         with open_trajectory(run.output) as output:
-            if json.loads(output.case_resolved) != run.data:
+            if output.case_data() != run.data:
                 return "waiting"
             if output.status in DONE:
                 return output.status

@@ -46,6 +46,13 @@ ONE_PROBLEM = [
      "must be > 0 (g um^-1 s^-1)"),
     ("viscosity: 1.3e-6", "viscosity: 0", 5, "fluid.viscosity = 0", "must be > 0"),
     ("viscosity: 1.3e-6", "viscosity: thick", 5, "fluid.viscosity = thick", "must be a number"),
+    ("viscosity: 1.3e-6", "viscosity: 1,3e-6", 5, "fluid.viscosity = 1,3e-6: a comma is only",
+     "decimals have a point"),
+    ("{spacings: 7}", "{spacings: 7,5}", 6, "fluid.epsilon", "is it a decimal comma?"),
+    ("{spacings: 7}", "{spacings:7}", 6, "fluid.epsilon.spacings", "write 'spacings: 7'"),
+    ("  end: 0.1\n", "  end:0.1\n", 26, "", "a blank must follow the colon in 'end:0.1'"),
+    ("  end: 0.1\n  tolerance: 1.0e-4\n", "  end:0.1\n", 24, "time = end:0.1",
+     "a blank must follow the colon: write 'end: 0.1'"),
     ("viscosity: 1.3e-6", "viscosity: 1.3e-6 g", 5, "fluid.viscosity = 1.3e-6 g", "'*'"),
     ("viscosity: 1.3e-6", "viscosity: -k", 5, "fluid.viscosity = -k (= -1.25)", "must be > 0 (g"),
     ("viscosity: 1.3e-6", "viscosity: k/0", 5, "fluid.viscosity = k/0 (= inf)", "must be finite"),
@@ -92,6 +99,7 @@ ONE_PROBLEM = [
      f"{SHAPE}.rotate.axis = [0, 0, 0]", "null vector"),
     ("origin: [0, 0, 0]", "rotate: {axis: [1, 0, 0]}", 14, f"{SHAPE}.rotate.degrees", "missing"),
     ("kind: straight", "kind: strait", 11, f"{SHAPE}.kind = strait", "did you mean 'straight'?"),
+    ("kind: straight", "kind: circle", 11, f"{SHAPE}.kind = circle", "did you mean 'ring'?"),
     ("kind: straight", "kind: 3", 11, f"{SHAPE}.kind = 3",
      "must be one of straight, ring, helix, sine, file"),
     ("      kind: straight\n", "", 10, f"{SHAPE}.kind", "missing: must be one of straight"),
@@ -108,6 +116,7 @@ ONE_PROBLEM = [
     ("sigma*t", "sgima*t", 20, f"{TWIST}.0 =", "unknown name 'sgima': did you mean 'sigma'?"),
     ("k**2", "k^2", 20, f"{TWIST}.0 =", "use ** for powers, not ^"),
     ("sin(k", "snn(k", 20, f"{TWIST}.0 =", "unknown function 'snn'"),
+    ("sin(k", "np.sin(k", 20, f"{TWIST}.0 =", "write sin(...), without 'np.'"),
     ("-k**2*b*sin(k*s + sigma*t)", "s.__class__", 20, f"{TWIST}.0 =", "attribute access"),
     ("-k**2*b*sin(k*s + sigma*t)", "__import__(s)", 20, f"{TWIST}.0 =", "unknown function"),
     ("-k**2*b*sin(k*s + sigma*t)", "lambda: 0", 20, f"{TWIST}.0 =", "not allowed"),
@@ -230,6 +239,44 @@ def test_all_problems_at_once_in_the_order_of_lines(run):
     ]
 
 
+def test_a_duplicate_key_hides_nothing(run):
+    case = FLAGELLUM.replace("density: 1.0e-12", "viscosity: 2e-6").replace("end: 0.1", "end: -1")
+    assert run(case) == [
+        "bad.yaml:7: fluid.viscosity: duplicate key: first given at bad.yaml:5",
+        "bad.yaml:25: time.end = -1: must be > 0 (s)",
+    ]
+
+
+def test_a_blank_that_is_missing_hides_nothing(run):
+    case = FLAGELLUM.replace("{spacings: 7}", "{spacings:7}").replace("end: 0.1", "end: -1")
+    first, second = run(case)
+    assert first.startswith("bad.yaml:6: fluid.epsilon.spacings: a blank must follow")
+    assert second.startswith("bad.yaml:25: time.end = -1")
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        ("", "missing: the name of the rod, a line 'NAME:' between rods and shape, moduli and "
+         "strain_twist"),
+        ("  -\n", "must be a mapping of names, not a list: write 'NAME:' instead of each '-'"),
+    ],
+)  # fmt: skip
+def test_a_forgotten_name_of_a_rod_is_said_once(run, name, reason):
+    case = FLAGELLUM.replace("  tail:\n", name).replace("end: 0.1", "end: -1")
+    line = 25 if name else 24
+    assert run(case) == [
+        f"bad.yaml:8: rods: {reason}", f"bad.yaml:{line}: time.end = -1: must be > 0 (s)"
+    ]  # fmt: skip
+
+
+def test_rods_may_be_called_as_their_own_keys(run):
+    case = FLAGELLUM.replace("  tail:", "  shape:").replace("rod: tail", "rod: shape")
+    assert run(case.replace("points: 60", "points: 1")) == [
+        "bad.yaml:12: rods.shape.shape.points = 1: must be >= 2"
+    ]
+
+
 def test_a_bad_rod_does_not_hide_what_is_wrong_with_another(run):
     other = """\
   bent:
@@ -254,8 +301,8 @@ def test_end_and_interval_must_fall_on_steps(run):
     fixed = "integrator: rk4\n  step: 3e-4"
     end, interval = run(FLAGELLUM.replace("tolerance: 1.0e-4", fixed))
     words = "must be a whole multiple of time.step = 0.0003 for rk4: try"
-    assert end == f"bad.yaml:25: time.end = 0.1: {words} 0.0999 (s)"
-    assert interval == f"bad.yaml:29: output.interval = 0.001: {words} 0.0009 (s)"
+    assert end == f"bad.yaml:25: time.end = 0.1 (s): {words} 0.0999"
+    assert interval == f"bad.yaml:29: output.interval = 0.001 (s): {words} 0.0009"
 
 
 def test_spacings_that_differ(run):
@@ -282,12 +329,13 @@ def test_a_bad_parameter_is_reported_once(run):
         (b"just text", "bad.yaml:1: ", "has no keys"),
         (b"- a\n- b", "bad.yaml:1: ", "has no keys"),
         (b"title: x\nfluid: \xff\n", "bad.yaml:2: ", "not UTF-8"),
-        (b"\x89HDF\r\n\x1a\n", "bad.yaml:1: ", "not UTF-8"),
+        (b"\x89HDF\r\n\x1a\n", "bad.yaml: ",
+         "is an output, not a case: go on with rodsim resume bad.yaml, or see rodsim info bad"),
         (b"#" * 1_000_001, "bad.yaml: ", "larger than 1000000 bytes"),
         (b"[" * 900_000, "bad.yaml:1: ", "nested deeper"),
         (b"a: [" + b"*a, " * 100, "bad.yaml:1: ", "aliases"),
     ],
-)
+)  # fmt: skip
 def test_not_a_case_at_all(run, case, start, words):
     message = run(case)[0]
     assert message.startswith(start)
@@ -326,6 +374,13 @@ def test_thousands_of_problems_are_cut_short(run):
         (["--set", "rods.tail.strain_twist.0=exec(s)"], "--set: rods.tail", "unknown function"),
         (["--set", "time.end=[1"], "--set: time.end: ", "not valid YAML"),
         (["--set", "fluid=null"], "--set: fluid: ", "missing"),
+        (["--set", "end=1"], "--set: end: ", "unknown key: did you mean 'time.end'?"),
+        (["--set", "shape.points=9"], "--set: shape.points: ", "'rods.tail.shape.points'?"),
+        (
+            ["--set", "time.end=[1, 2]"],
+            "--set: time.end = [1, 2]: ",
+            "rodsim sweep runs over a list",
+        ),
     ],
 )
 def test_bad_overrides(run, options, start, words):

@@ -15,6 +15,7 @@ from contents import differences
 
 from rodsim import load_case, open_trajectory, resume, simulate
 from rodsim.cli import main
+from rodsim.compiled.settings import machine
 from rodsim.errors import CaseError, FileError, StoppedError
 
 MODULI = "moduli: {bending: 3.5e-3, twisting: 2.5e-3, shear: 0.7, stretch: 0.9}"
@@ -339,3 +340,49 @@ def test_a_second_interrupt_does_not_wait(monkeypatch):
         assert stop() == "SIGINT"
         with pytest.raises(KeyboardInterrupt):
             os.kill(os.getpid(), signal.SIGINT)
+
+
+STORED = {"numba": b"0.1", "processor": b"z80 00000000"}
+
+
+@pytest.mark.parametrize("changed", [{}, *({name: text} for name, text in STORED.items()), STORED])
+def test_another_machine_or_other_versions_are_warned_of_once(tmp_path, changed):
+    path, listener = tmp_path / "out.h5", after(3)
+    listener.warn = (said := []).append
+    with suppress(StoppedError):
+        simulate(make(tmp_path, PLANAR), path, listener=after(4))
+    with h5py.File(path, "r+") as file:
+        for name, text in changed.items():
+            file["runtime"].attrs.modify(name, np.bytes_(text))
+    with suppress(StoppedError):
+        resume(path, listener=listener)
+    resume(path, listener=listener)
+    here = machine()
+    was = ", ".join(f"{name} {text.decode()}" for name, text in changed.items())
+    now = ", ".join(f"{name} {here[name]}" for name in changed)
+    warning = f"{path} was written with {was}, this is {now}: last digits can differ from those"
+    assert said == ([f"{warning} of one run"] if changed else [])
+
+
+def test_a_file_that_does_not_name_its_machine_goes_on(tmp_path):
+    simulate(make(tmp_path, PLANAR), tmp_path / "whole.h5")
+    path = tmp_path / "out.h5"
+    with suppress(StoppedError):
+        simulate(make(tmp_path, PLANAR), path, listener=after(4))
+    with h5py.File(path, "r+") as file:
+        for name in machine():
+            del file["runtime"].attrs[name]
+    resume(path)
+    assert differences(path, tmp_path / "whole.h5") == []
+
+
+@pytest.mark.skipif(shutil.which("h5repack") is None, reason="needs h5repack")
+@pytest.mark.parametrize("layout", ["CONTI", "COMPA"])
+def test_a_file_that_was_repacked_says_how_it_goes_on(tmp_path, layout):
+    path, packed = tmp_path / "out.h5", tmp_path / "packed.h5"
+    with suppress(StoppedError):
+        simulate(make(tmp_path, PLANAR), path, listener=after(4))
+    subprocess.run(["h5repack", "-l", layout, path, packed], check=True)
+    with pytest.raises(FileError, match=r"laid out anew .* a later --set time.end="):
+        resume(packed)
+    assert resume(packed, overrides=["time.end=1.2e-2"]).status == "finished"

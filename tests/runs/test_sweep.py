@@ -134,6 +134,9 @@ def test_a_table_has_a_run_per_row_and_meets_the_lists(here):
 @pytest.mark.parametrize(
     ("settings", "table", "error", "words"),
     [
+        (["rods.ring.strain_twist=[1.2, 0, 0.5]"], None, CaseError,
+         "rods.ring.strain_twist = [1.2, 0, 0.5]: one run for each entry, and none is a list: "
+         "write [[1.2, 0, 0.5]] for one value that is this list"),
         (["time.end=[0.02, -3]"], None, CaseError, "time.end = -3: must be > 0"),
         (["time.ende=[0.02]"], None, CaseError, "did you mean 'end'"),
         (["time.end=[]"], None, UsageError, "0 runs"),
@@ -287,7 +290,7 @@ def real_cluster(folder):
              "--nthreads", "1", "--no-dashboard"]  # fmt: skip
     processes = [subprocess.Popen(start, **quiet)]
     try:
-        wait_for(file.exists)
+        wait_for(file.exists, *processes)
         processes += [subprocess.Popen(serve, **quiet) for _ in range(2)]
         yield json.loads(file.read_text())["address"], processes[1:]
     finally:
@@ -296,12 +299,11 @@ def real_cluster(folder):
             process.wait()
 
 
-def wait_for(condition, seconds=60):
-    for _ in range(20 * seconds):
-        if condition():
-            return
+def wait_for(condition, *processes):
+    """Wait, however busy the machine is, until a condition holds that these will bring about."""
+    while not condition():
+        assert all(process.poll() is None for process in processes), "ended too early"
         time.sleep(0.05)
-    raise AssertionError("waited in vain")
 
 
 def run_of(worker):
@@ -316,13 +318,13 @@ def run_of(worker):
 
 
 def well_begun(worker):
-    """Whether a worker's run has written some frames, but not half of them."""
+    """Whether a worker's run has written some frames, but not all of them."""
     found = run_of(worker)
     if not found:
         return False
     try:
         with open_trajectory(found[1]) as run:
-            return 3 <= run.frames <= 50
+            return 3 <= run.frames < len(run.planned)
     except Exception:  # not there yet
         return False
 
@@ -331,8 +333,7 @@ def start_and_kill_one(arguments, address, workers):
     """Start a sweep, kill a worker and its run in the middle; return (output killed, result)."""
     sweep = [sys.executable, "-m", "rodsim", "sweep", *map(str, arguments), "--scheduler", address]
     with subprocess.Popen(sweep, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as p:
-        wait_for(lambda: p.poll() is not None or well_begun(workers[0]), 300)
-        assert p.poll() is None, p.communicate()
+        wait_for(lambda: well_begun(workers[0]), p)
         process, output = run_of(workers[0])
         workers[0].kill()
         process.kill()
@@ -359,13 +360,21 @@ def test_a_killed_worker_loses_nothing(here):
 
 @pytest.mark.compiled
 def test_ctrl_c_stops_the_runs_and_the_same_command_goes_on(here):
-    arguments = ["sweep", RING, "--set", "rods.ring.shape.points=[60, 64, 68]",
-                 "--set", "time.tolerance=1e-10", "-j", "2"]  # fmt: skip
+    arguments = [
+        "sweep",
+        RING,
+        "--set",
+        "rods.ring.shape.points=[60, 64, 68]",
+        "--set",
+        "time.max_step=1e-8",
+        "-j",
+        "2",
+    ]  # fmt: skip  (an hour each)
     with subprocess.Popen(
         [sys.executable, "-m", "rodsim", *arguments],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     ) as sweep:  # fmt: skip
-        wait_for(lambda: len(list(here.glob("sweep/*/out.h5"))) == 2)
+        wait_for(lambda: len(list(here.glob("sweep/*/out.h5"))) == 2, sweep)
         sweep.send_signal(signal.SIGINT)
         _, said = sweep.communicate()
     assert sweep.returncode == 75

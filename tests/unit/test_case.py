@@ -131,9 +131,9 @@ def test_source_remembers_text_and_overrides(load, tmp_path):
     assert case.source.overrides == ("time.end=0.3",)
     path = tmp_path / "case.yaml"
     assert str(case.problem("rods.ring.shape.radius", "is odd")) == (
-        f"{path}:6: rods.ring.shape.radius = 2.5: is odd (um)"
+        f"{path}:6: rods.ring.shape.radius = 2.5 (um): is odd"
     )
-    assert str(case.problem(("time", "end"), "is odd")) == "--set: time.end = 0.3: is odd (s)"
+    assert str(case.problem(("time", "end"), "is odd")) == "--set: time.end = 0.3 (s): is odd"
 
 
 def test_units_of_messages_are_the_cases_own(load):
@@ -272,6 +272,24 @@ def test_same_data_as_an_ordinary_yaml_reader(load):
     assert case.fluid.viscosity == plain["fluid"]["viscosity"]
     assert np.array(case.rods["ring"].strain_twist) == pytest.approx(
         plain["rods"]["ring"]["strain_twist"]
+    )
+
+
+def test_more_points_are_no_advice_where_a_unit_is_wrong(load):
+    (warning,) = load(RING, ["fluid.epsilon=1e-9"]).warnings
+    assert "points would do: are the units of epsilon and the rod right?" in warning.reason
+    with pytest.raises(CaseError, match="are the units of strain_twist and the rod right"):
+        load(RING, ["rods.ring.strain_twist=[1.2e6, 0, 0]"])
+
+
+def test_the_command_for_another_run_replaces_what_it_changes(load, tmp_path):
+    source = load(RING, ["time.integrator=euler", "time.step = 1e-3", "time.end=0.3"]).source
+    assert source.command("time.integrator=rkc", output="a b.h5") == (
+        f"rodsim run {tmp_path / 'case.yaml'} --set time.integrator=rkc --set 'time.step = 1e-3'"
+        " --set time.end=0.3 -o 'a b.h5'"
+    )
+    assert source.command("time.step=1e-4").endswith(
+        "--set time.integrator=euler --set time.step=1e-4 --set time.end=0.3"
     )
 
 

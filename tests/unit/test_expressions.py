@@ -89,6 +89,15 @@ def test_invalid_is_nan_without_a_warning():
         ("sinn(s)", "unknown function 'sinn': did you mean 'sin'?"),
         ("k(s)", "unknown function 'k'"),
         ("sin", "'sin' is a function"),
+        ("atan(s)", "did you mean 'arctan'?"),
+        ("asin(s)", "did you mean 'arcsin'?"),  # and not 'sin', which is nearer by letters
+        ("atan2(s, t)", "did you mean 'arctan2'?"),
+        ("ln(s)", "did you mean 'log'?"),
+        ("np.sin(t)", "write sin(...), without 'np.'"),
+        ("2*numpy.pi*t", "write pi, without 'numpy.'"),
+        ("math.atan(t)", "there is no 'math' here: did you mean 'arctan'?"),
+        ("arctan2(s)", "arctan2 takes 2 arguments, not 1"),
+        ("0,5*s", "decimals have a point"),
         ("2(s + 1)", "did you leave out a '*'"),
         ("2 s", "not an expression"),
         ("", "empty"),
@@ -143,7 +152,6 @@ def test_invalid_is_nan_without_a_warning():
         ("* s", "nothing stands before '*'"),
         ("sin()", "sin takes 1 argument, not 0"),
         ("()", "something is missing"),
-        ("arctan2(s)", "arctan2 takes 2 arguments, not 1"),
         ("heaviside(s, t, 1)", "heaviside takes 1 or 2 arguments, not 3"),
     ],
 )

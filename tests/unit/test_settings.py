@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from rodsim.compiled.folder import private_folder
+
 CODE = """
 from rodsim.compiled.settings import prepare
 prepare()
@@ -35,6 +37,34 @@ def test_where_that_cannot_be_written_the_process_has_a_folder_of_its_own(tmp_pa
     folder = cache_of(tmp_path / "file")
     assert tmp_path not in folder.parents
     assert not folder.exists()  # gone with the process
+
+
+def test_a_folder_that_others_may_write_is_not_used(tmp_path):
+    folder = cache_of(tmp_path)
+    folder.chmod(0o777)
+    assert tmp_path not in cache_of(tmp_path).parents
+    folder.chmod(0o700)
+    assert cache_of(tmp_path) == folder
+
+
+def test_a_folder_of_code_is_made_for_its_owner_alone(tmp_path):
+    folder = private_folder(tmp_path / "made" / "rodsim" / "code")
+    for part in (folder, folder.parent):
+        assert part.stat().st_mode & 0o777 == 0o700
+    folder.parent.chmod(0o775)
+    private_folder(folder)
+    assert folder.parent.stat().st_mode & 0o777 == 0o755
+    folder.chmod(0o720)
+    with pytest.raises(PermissionError, match="others may write it, so it is not used"):
+        private_folder(folder)
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid"), reason="no owners here")
+def test_a_folder_of_someone_else_is_not_used(tmp_path, monkeypatch):
+    folder = private_folder(tmp_path / "rodsim" / "code")
+    monkeypatch.setattr(os, "geteuid", lambda: folder.stat().st_uid + 1)
+    with pytest.raises(PermissionError, match="belongs to another user"):
+        private_folder(folder)
 
 
 def test_importing_the_library_changes_no_setting():

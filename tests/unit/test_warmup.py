@@ -1,8 +1,12 @@
 """What counts as compiled: a list with checksums, against every way a cache can be broken."""
 
+import os
+
 import pytest
+from scenes import load
 
 from rodsim.compiled import settings
+from rodsim.run import warmup
 from rodsim.run.warmup import LIST, is_compiled, note_compiled
 
 RING, PLANE = "here-algebraic7-0-0", "here-algebraic7-1-0"
@@ -61,6 +65,30 @@ def test_in_a_folder_of_the_user_the_files_of_others_do_not_count(tmp_path):
     folder = fill(tmp_path / "mine")
     (folder / "sums" / "sum.nbi").write_bytes(b"what another program keeps there")
     assert is_compiled(folder, RING)
+
+
+def test_links_that_wait_under_the_names_of_the_cache_are_not_followed(folder, tmp_path):
+    victim = tmp_path / "victim"
+    victim.write_text("precious")
+    (folder / "lock").symlink_to(victim)
+    (folder / f"{LIST}.{os.getpid()}").symlink_to(victim)
+    with pytest.raises(OSError, match="symbolic link"), warmup._alone(folder):
+        raise AssertionError("the lock was taken")
+    note_compiled(folder, PLANE)
+    assert victim.read_text() == "precious"
+    assert is_compiled(folder, PLANE)
+
+
+def test_once_is_not_said_where_nothing_can_be_kept(monkeypatch):
+    said = []
+    monkeypatch.delenv("NUMBA_CACHE_DIR")
+    monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
+    monkeypatch.setattr(settings, "_not_kept", ["/home/me/.cache: Read-only file system"])
+    assert warmup.ensure_compiled(load("closed_ring"), said.append) == 0.0
+    assert said == [
+        "compiling for this kind of scene, as at every run, for nothing can be kept "
+        "(/home/me/.cache: Read-only file system); some seconds"
+    ]
 
 
 def test_another_processor_source_or_version_has_a_cache_of_its_own(tmp_path, monkeypatch):

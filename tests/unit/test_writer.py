@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from outputs import CASE, POINTS, RODS, TIMES, TRACERS, UNITS, create, frame, write
 
+from rodsim.compiled.settings import machine
 from rodsim.errors import FileError
 from rodsim.nodes import Rod, Rods
 from rodsim.output import build, open_trajectory
@@ -42,7 +43,8 @@ def test_every_dataset_comes_back(tmp_path):
         assert (run.case_source, run.case_resolved) == (CASE.source, CASE.resolved)
         assert (run.overrides, run.resumes) == (CASE.overrides, [])
         assert (run.status, run.units) == ("finished", UNITS)
-        assert run.runtime == {"wall_seconds": 2.5, "evaluations": 77, "threading_layer": "omp"}
+        given = {"wall_seconds": 2.5, "evaluations": 77, "threading_layer": "omp"}
+        assert run.runtime == given | machine()
 
 
 def test_layout_is_the_documented_one(tmp_path):
@@ -186,7 +188,7 @@ def test_runtime_can_be_updated_while_running(tmp_path):
         with open_trajectory(tmp_path / "out.h5") as run:
             assert (run.status, run.runtime) == (
                 "running",
-                {"evaluations": 5, "spectral_radius": 2.5},
+                {"evaluations": 5, "spectral_radius": 2.5} | machine(),
             )
 
 
@@ -213,6 +215,7 @@ def test_a_full_disk_leaves_the_old_output(tmp_path, monkeypatch, fails):
 FULL = """
 import resource, signal, sys
 from outputs import create
+from rodsim.compiled.settings import machine
 from rodsim.errors import FileError
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # a write beyond the limit fails, as on a full disk
 resource.setrlimit(resource.RLIMIT_FSIZE, (40_000, 40_000))

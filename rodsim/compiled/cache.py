@@ -1,0 +1,83 @@
+"""What Numba keeps of compiled code: whether it can, and whether what lies there is whole.
+
+A file of its cache that is cut off ends every start in an EOFError. Numba gives a file its name
+only when it is whole, so one that does not end as a pickle was damaged since.
+"""
+
+import os
+import warnings
+from functools import cache
+from pathlib import Path
+
+import numba
+from numba import njit
+
+from rodsim.errors import FileError
+
+END = b"."  # of every pickle
+
+
+def cached_njit(*signature, **options):
+    """Return Numba's ``njit`` with its cache, or without where nothing can be kept.
+
+    For use as a decorator, with a signature or without.
+    """
+    if signature and callable(signature[0]):
+        return cached_njit(**options)(signature[0])
+
+    def decorate(function):
+        return njit(*signature, cache=keeps(function), **options)(function)
+
+    return decorate
+
+
+_seen: dict[str, bool] = {}
+
+
+def keeps(function) -> bool:
+    """Tell whether compiled code of a function's folder can be kept, once that is mended."""
+    room = os.path.dirname(function.__code__.co_filename)
+    if room not in _seen:
+        _seen[room] = numba.config.DISABLE_JIT or _mended(function)
+    return _seen[room]
+
+
+def _mended(function):
+    try:
+        folder = njit(cache=True)(function).stats.cache_path  # all functions of a room are there
+    except RuntimeError:  # Numba has no place to write to
+        _warn_once()
+        return False
+    remove_damaged(Path(folder))
+    return True
+
+
+def remove_damaged(folder: Path) -> None:
+    """Remove the files of a cache that are not whole; FileError where that cannot be done."""
+    for file in [*folder.glob("*.nbi"), *folder.glob("*.nbc")]:
+        try:
+            if not _whole(file):
+                file.unlink(missing_ok=True)
+        except FileNotFoundError:
+            continue  # another process was faster
+        except OSError as error:
+            raise FileError(
+                f"{file}: damaged file of Numba's cache, which cannot be removed: "
+                f"{error.strerror}; remove it, or set NUMBA_CACHE_DIR to a folder of your own"
+            ) from None
+
+
+def _whole(file):
+    with file.open("rb") as stream:
+        size = stream.seek(0, os.SEEK_END)
+        stream.seek(max(0, size - 1))
+        return stream.read() == END
+
+
+@cache
+def _warn_once():
+    warnings.warn(
+        "compiled code cannot be kept, so every start compiles it anew: set NUMBA_CACHE_DIR to a "
+        "folder that can be written",
+        stacklevel=2,
+    )

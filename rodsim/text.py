@@ -1,0 +1,15 @@
+"""Text from files, made fit for a terminal."""
+
+
+def printable(text: str) -> str:
+    """Return text with all but line ends and printable characters escaped.
+
+    Escape sequences in a file can clear a terminal, rename its window, or hide what follows.
+    """
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() or c == "\n" else _escaped(c) for c in text)
+
+
+def _escaped(character: str) -> str:
+    return character.encode("unicode_escape").decode()
