@@ -3,8 +3,9 @@
     python benchmarks/work_precision.py [SCENE ...] [--decades 2 7] [--per-decade 3]
 
 The ring and the open rod are held against tests/reference, the flagellum against a run of itself
-at a tolerance of 1e-9 (half a minute). Evaluations include rejected steps and power iterations.
-Errors are in um at the end of the case. To compare two versions, run it with each on PYTHONPATH.
+at a tolerance of 1e-9 (half a minute). Evaluations include rejected steps and estimates of the
+fastest rate. Errors are in um at the end of the case. To compare two versions, run it with each on
+PYTHONPATH.
 For a scene of your own, `rodsim converge` makes its own reference.
 """
 

@@ -40,7 +40,7 @@ class ImmersedRods:
     def __init__(self, case, setup: Setup):
         if case.fluid.density is None:
             reason = "the Navier-Stokes equations need fluid.density"
-            raise CaseError([case.problem("fluid", reason)])
+            raise CaseError([case.source.problem("fluid", reason)])
         self.scene, self.step = build_scene(case), setup.step
         box = setup.box or setup.n * 2.0 * float(self.scene.rods.spacing[0])
         self.fluid = Fluid(setup.n, box, case.fluid.density, case.fluid.viscosity, setup.threads)

@@ -64,11 +64,11 @@ class Replay:
     @cached_property
     def _machinery(self):
         """The system of the scene and its fastest rate; compiled only where states are moved."""
-        from rodsim.integrators.spectral import SpectralRadius
+        from rodsim.integrators.fastest_rate import FastestRate
         from rodsim.scene.system import RodSystem
 
         system = RodSystem(self.scene)
-        return system, SpectralRadius(system)
+        return system, FastestRate(system)
 
     def sources(self, frame: int) -> Sources:
         """Return what the rods of a frame exert on the fluid, eqs. (30), (31)."""

@@ -245,15 +245,11 @@ class Case(Model):
         return [self.source.path, *(os.path.join(folder, path) for path in shapes)]
 
     @property
-    def longest_step(self) -> float:
+    def max_step_size(self) -> float:
         """Longest step of rkc: over a drive that changes in time, it passes in small parts."""
         if self.time.max_step is not None:
             return self.time.max_step
         return self.interval if is_driven(self) else math.inf
-
-    def problem(self, key_path: str | tuple, reason: str) -> Problem:
-        """Return a Problem at a key, with its file:line, value and unit, for later checks."""
-        return self._source.problem(key_path, reason)
 
     def resolved(self) -> dict[str, Any]:
         """Return the case as plain data with all defaults filled in, expressions as text.

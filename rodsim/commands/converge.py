@@ -67,7 +67,7 @@ def converge(case_path, axes, report, overrides, threads, quiet):
     from rodsim.run.warmup import ensure_compiled
     from rodsim.scene.build import build_scene
 
-    plain = build_scene(load(case_path, (*overrides, "tracers=null")))
+    plain = build_scene(case)
     ensure_compiled(plain, lambda line: quiet or say(line))
     from rodsim.convergence import report as reporting
     from rodsim.convergence.study import Study

@@ -41,12 +41,13 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Errors:
-    """What separates two outcomes; ``speed`` is None where nothing swims.
+    """What separates two outcomes; ``speed`` is None where nothing is driven, ``tracers`` where
+    there are none.
 
     position: largest distance, length; relative: the same over the longest rod; rms: root mean
     square distance, length; angle: largest angle between triads, degrees; energy: difference
     over the larger of the elastic energies at both ends; speed: |v - v_ref|/|v_ref|, v the mean
-    velocity of the centroid.
+    velocity of the centroid; tracers: largest distance of one, length.
     """
 
     position: float
@@ -55,6 +56,7 @@ class Errors:
     angle: float
     energy: float
     speed: float | None
+    tracers: float | None
 
 
 def solve(
@@ -138,7 +140,13 @@ def compare(run: Outcome, reference: Outcome) -> Errors:
         angle=triad_angle(ours.director, theirs.director),
         energy=abs(run.energies[1] - reference.energies[1]) / scale if scale else 0.0,
         speed=speed,
+        tracers=_tracers(run.end.tracer, reference.end.tracer),
     )
+
+
+def _tracers(ours, theirs):
+    """Return the largest distance of a tracer, None where there are none."""
+    return position_errors(ours, theirs)[0] if ours.size else None
 
 
 def _shared(run, other):

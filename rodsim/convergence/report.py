@@ -53,6 +53,7 @@ def text(study: Study) -> str:
 
 def _section(study, section):
     unit, swims = study.case.units.length, study.scene.parts.driven
+    carries = study.scene.initial.tracer.size > 0
     yield HEADS[section.axis]
     own = "" if section.own is None else f": good to {section.own.position:.1e} {unit}"
     yield f"reference: {section.reference}{own}"
@@ -62,10 +63,10 @@ def _section(study, section):
     yield f"largest and rms distance in {unit}, wall time in seconds; energy over the larger of its"
     yield "first and last value, speed over itself; ~: no larger than what the reference may err"
     names = ["method", "value", "largest", "of length", "rms", "angle/deg", "energy"]
-    names += ["speed"] * swims + ["solve/s", "evaluations", "pairs x evals"]
+    names += ["speed"] * swims + ["tracers"] * carries + ["solve/s", "evaluations", "pairs x evals"]
     yield "  ".join(f"{name:>13}" for name in names)
     for result in sorted(section.results, key=_order):
-        yield "  ".join(f"{cell:>13}" for cell in _cells(section, result, swims))
+        yield "  ".join(f"{cell:>13}" for cell in _cells(section, result, swims, carries))
     for method in dict.fromkeys(result.row.method for result in section.results):
         order = fitted_order(section, method)
         if order is not None:
@@ -77,7 +78,7 @@ def _order(result):
     return METHODS.index(result.row.method), -result.row.value
 
 
-def _cells(section, result, swims):
+def _cells(section, result, swims, carries):
     head = [result.row.method, f"{result.row.value:.6g}"]
     if result.outcome is None:
         return [*head, result.status]
@@ -85,12 +86,12 @@ def _cells(section, result, swims):
     cost = [f"{np.median(run.seconds):.3g}", str(run.evaluations),
             f"{run.evaluations * run.pairs:.3g}"]  # fmt: skip
     if e is None:
-        return [*head, "reference", *[""] * (4 + swims), *cost]
+        return [*head, "reference", *[""] * (4 + swims + carries), *cost]
     near = section.own is not None and e.position < NEAR * section.floor
     largest = ("~" if near else "") + f"{e.position:.2e}"
-    speed = [f"{e.speed:.2e}"] if swims else []
+    more = [f"{x:.2e}" for x, there in ((e.speed, swims), (e.tracers, carries)) if there]
     sizes = [f"{x:.2e}" for x in (e.relative, e.rms, e.angle, e.energy)]
-    return [*head, largest, *sizes, *speed, *cost]
+    return [*head, largest, *sizes, *more, *cost]
 
 
 def _choice(study, section):
@@ -122,6 +123,10 @@ def _named(fastest):
         yield f"{method} {result.row.value:g} {seconds:.3g} s{ratio}"
 
 
+def _cell(value):
+    return "" if value is None else value
+
+
 class CsvRows:
     """Rows go to the file as they end: what an interrupted study has is kept."""
 
@@ -129,7 +134,7 @@ class CsvRows:
                "position_error", "relative_error", "rms_error", "triad_angle_degrees",
                "energy_error", "speed_error", "seconds", "seconds_low", "seconds_high", "repeats",
                "steps", "rejected", "evaluations", "pairs",
-               "reference_error", "rounding_error")  # fmt: skip
+               "reference_error", "rounding_error", "tracer_error")  # fmt: skip
 
     def __init__(self, path):
         self.path = path
@@ -139,13 +144,15 @@ class CsvRows:
         """Write one row."""
         e, run = result.errors, result.outcome
         known = ["" if e is None else e.position for e in (section.own, section.rounding)]
-        errors = [""] * 6 if e is None else ["" if x is None else x for x in vars(e).values()]
+        *errors, tracers = [""] * 7 if e is None else [_cell(x) for x in vars(e).values()]
         cost = [""] * 8
         if run is not None:
             spread = np.median(run.seconds), min(run.seconds), max(run.seconds)
             cost = [*spread, len(run.seconds), run.steps, run.rejected, run.evaluations, run.pairs]
         row = result.row
-        self._write([row.axis, row.method, row.value, result.status, *errors, *cost, *known], "a")
+        self._write(
+            [row.axis, row.method, row.value, result.status, *errors, *cost, *known, tracers], "a"
+        )
 
     def _write(self, cells, mode):
         try:

@@ -21,7 +21,7 @@ SENSITIVITY = (0.5, 2**-0.5, 2**0.5, 2.0)  # epsilon over the case's own
 class Row:
     """One run: which axis and method it belongs to, the value there, the keys that make it so.
 
-    ``evaluations``: a guess of what it costs, for the progress bar and for --max-wall.
+    ``evaluations``: a guess of what it costs, for the progress bar .
     """
 
     axis: str
@@ -32,10 +32,10 @@ class Row:
 
 
 def quiet(case) -> tuple[str, ...]:
-    """Return what every run changes: no tracers, which move no rod, and no frames but the end."""
-    longest = case.longest_step
+    """Return what every run changes: no frames but the end."""
+    longest = case.max_step_size
     kept = (f"time.max_step={longest!r}",) if math.isfinite(longest) else ()
-    return "tracers=null", f"output.interval={case.time.end!r}", *kept
+    return f"output.interval={case.time.end!r}", *kept
 
 
 def rkc(tolerance: float) -> tuple[str, ...]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from time import monotonic
 
 from rodsim.convergence import rows
 from rodsim.convergence.outcome import Errors, Outcome, compare, solve
@@ -18,7 +17,7 @@ REPEATS = 3
 BESIDE = 20_000  # pairs that all but the sums takes as long as, in an evaluation
 ROUNDING = 1e-12  # of the longest rod: what a last bit is after a stable run
 AMPLIFIED = 0.1  # of the reference's own error: rounding is then part of it
-DONE, REFUSED, DIVERGED, LEFT_OUT = "", "refused", "diverged", "left out"
+DONE, REFUSED, DIVERGED = "", "refused", "diverged"
 
 
 @dataclass(frozen=True)
@@ -57,33 +56,27 @@ class Section:
         return self.rounding.position > AMPLIFIED * self.own.position
 
 
-class OutOfTime(Exception):
-    """The study has used the wall time that it was given."""
-
-
 class Study:
     """Error against run time of a case.
 
     ``load(overrides)`` returns the case with more keys changed; ``axes`` are some of
-    ``rows.AXES``; ``max_wall`` (seconds): rows that would not end by then are left out.
+    ``rows.AXES``.
     """
 
-    def __init__(self, load: Callable, axes, threads=None, max_wall=None, progress=None):
+    def __init__(self, load: Callable, axes, threads=None, progress=None):
         self.load, self.threads, self.progress = load, threads, progress
         self.case = load(())
         self.scene = build_scene(self.case)
         self.limits = stability(RodSystem(self.scene))
         self.axes = [axis for axis in rows.AXES if axis in axes]
         self.sections: list[Section] = []
-        self._end = monotonic() + max_wall if max_wall else float("inf")
-        self._seconds_per_pair = None
         self._weights = self._done = 0.0
 
     def run(self) -> Iterator[tuple[Section, Result]]:
         """Yield each row as it ends; ``sections`` holds them all.
 
-        Raises UsageError if even a reference does not fit into the time, or for an axis that the
-        scene does not have.
+        Raises UsageError where a reference cannot be had, or for an axis that the scene does not
+        have.
         """
         plan = self._plan()
         parts = [row for _, part in plan for row in part]
@@ -139,11 +132,9 @@ class Study:
 
     def _section(self, section, part):
         first, *others = part
-        begin = monotonic()
         reference = self._outcome(first, repeats=1)
         if not isinstance(reference, Outcome):
             raise UsageError(f"{section.axis}: the reference ({section.reference}) is {reference}")
-        self._measured(reference, monotonic() - begin)
         self.sections.append(section)
         if section.axis == "points":
             others = [*others, first]
@@ -168,19 +159,12 @@ class Study:
         return row.axis == "time"
 
     def _rounding(self, row, outcome):
-        if self._predicted(row) > self._end - monotonic():
-            self._done += self._weight(row)
-            return None
         twin = self._outcome(row, repeats=1, nudged=True)
         return compare(twin, outcome) if isinstance(twin, Outcome) else None
 
     def _result(self, row, first, reference):
         if row is first:
             return Result(row, reference)
-        left = self._end - monotonic()
-        if self._seconds_per_pair and self._predicted(row) > left:
-            self._done += self._weight(row)
-            return Result(row, status=f"{LEFT_OUT}: would take some {self._predicted(row):.0f} s")
         outcome = self._outcome(row, repeats=1 if row.axis == "time" else REPEATS)
         if not isinstance(outcome, Outcome):
             return Result(row, status=outcome)
@@ -202,14 +186,10 @@ class Study:
             found = f"{REFUSED}: {error.problems[0].reason}"
         except DivergedError as error:
             found = f"{DIVERGED}: {str(error).splitlines()[0]}"
-        except OutOfTime:
-            found = f"{LEFT_OUT}: no time left"
         self._done += weight
         return found
 
     def _tick(self, row, part):
-        if monotonic() > self._end:
-            raise OutOfTime
         if self.progress:
             fraction = (self._done + part) / self._weights
             self.progress.update(min(1.0, fraction), f"{row.method} {row.axis} {row.value:g}")
@@ -218,12 +198,6 @@ class Study:
         """Return the cost of a row in pairs of its sums, roughly."""
         points = row.value if row.axis == "points" else self.scene.rods.points
         return row.evaluations * (points**2 + BESIDE)
-
-    def _measured(self, outcome, seconds):
-        self._seconds_per_pair = seconds / (outcome.evaluations * (outcome.pairs + BESIDE))
-
-    def _predicted(self, row):
-        return self._seconds_per_pair * self._weight(row)
 
 
 def _own(section, errors):

@@ -63,7 +63,7 @@ class Defect:
         """Keep the step under trial."""
         self._behind = [self._trial, *self._behind[:1]]
 
-    def state(self, numbers: int) -> dict:
+    def memory(self, numbers: int) -> dict:
         """Return the memory of the steps behind, for a checkpoint; no step has size 0."""
         behind = [*self._behind, *[(np.zeros(numbers), 0.0)] * 2][:2]
         return {
@@ -71,7 +71,7 @@ class Defect:
             "third_sizes": np.array([size for _, size in behind]),
         }
 
-    def restore(self, state: dict) -> None:
-        """Take over what ``state`` returned."""
-        steps = zip(state["thirds"], state["third_sizes"].tolist(), strict=True)
+    def recall(self, memory: dict) -> None:
+        """Take over what ``memory`` returned."""
+        steps = zip(memory["thirds"], memory["third_sizes"].tolist(), strict=True)
         self._behind = [(third, size) for third, size in steps if size > 0.0]

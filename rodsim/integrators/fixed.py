@@ -10,7 +10,7 @@ class FixedStep:
     """Steps of equal size; time is counted, t_n = n * size, never accumulated."""
 
     method: Method
-    spectral_radius = float("nan")
+    fastest_rate = float("nan")
 
     def __init__(self, system: RodSystem, step: float):
         self.system = system
@@ -18,13 +18,13 @@ class FixedStep:
         self.accepted = self.rejected = 0
         self.max_stages = self.method.stages
 
-    def state(self) -> dict:
+    def memory(self) -> dict:
         """Return what the steps to come depend on, for a checkpoint, and the counters."""
-        return {"accepted": self.accepted, "spectral_radius": self.spectral_radius}
+        return {"accepted": self.accepted, "spectral_radius": self.fastest_rate}
 
-    def restore(self, state: dict) -> None:
-        """Take over what ``state`` returned."""
-        self.accepted, self.spectral_radius = state["accepted"], state["spectral_radius"]
+    def recall(self, memory: dict) -> None:
+        """Take over what ``memory`` returned."""
+        self.accepted, self.fastest_rate = memory["accepted"], memory["spectral_radius"]
 
     def increment(self, state: State):
         """Return the increments of one step from ``state``."""

@@ -6,8 +6,8 @@ import numpy as np
 
 from rodsim.case.methods import FIXED_STEP
 from rodsim.errors import CaseError, StepFailure, UsageError
-from rodsim.integrators.rkc import RADIUS_SAFETY, stages_for
-from rodsim.integrators.spectral import SpectralRadius
+from rodsim.integrators.fastest_rate import FastestRate
+from rodsim.integrators.rkc import RATE_SAFETY, stages_for
 
 NEAR = 0.8  # of the limit: from here on a step is warned of
 GROWN = 1.02  # of the limit: estimates come from below, so beyond this it is above for certain
@@ -22,15 +22,15 @@ class Limits:
     stages: dict[float, int]
 
 
-def stability(system, radius: SpectralRadius | None = None) -> Limits:
+def stability(system, fastest: FastestRate | None = None) -> Limits:
     """Estimate the fastest rate rho of a system in its initial state, and what follows from it.
 
     Forward Euler is stable for h < 2/rho, RK4 for h < 2.785/rho, without a safety factor. The
-    estimate, by Arnoldi iteration (``radius``, where one is kept), comes from below; of 60 random
+    estimate, by Arnoldi iteration (``fastest``, where one is kept), comes from below; of 60 random
     scenes the worst was 0.1 % low.
     Raises UsageError where the rate is no number to compute with.
     """
-    rho = (radius or SpectralRadius(system)).estimate(system.scene.initial, tolerance=1e-6)
+    rho = (fastest or FastestRate(system)).estimate(system.scene.initial, tolerance=1e-6)
     if not (np.isfinite(rho) and rho > 0.0 and 1.0 / rho > 0.0):
         raise UsageError(
             f"the fastest rate of this scene comes out as {rho:.3g}: its numbers are too large or "
@@ -38,7 +38,7 @@ def stability(system, radius: SpectralRadius | None = None) -> Limits:
         )
     steps = {name: method.limit / rho for name, method in FIXED_STEP.items()}
     sizes = [float(f"{factor / rho:.0e}") for factor in (1e1, 1e2, 1e3, 1e4)]
-    return Limits(rho, steps, {h: stages_for(h, RADIUS_SAFETY * rho) for h in sizes})
+    return Limits(rho, steps, {h: stages_for(h, RATE_SAFETY * rho) for h in sizes})
 
 
 def check_step(case, found: Limits) -> list:
@@ -67,19 +67,19 @@ class RateWatch:
     few steps. So the rate is estimated only where they have doubled, which costs nothing else.
     """
 
-    def __init__(self, system, integrator, radius: SpectralRadius):
+    def __init__(self, system, integrator, fastest: FastestRate):
         self.system, self.integrator = system, integrator
-        self._radius = radius
+        self._fastest = fastest
         self._largest = 0.0
 
-    def state(self) -> dict:
+    def memory(self) -> dict:
         """Return what later estimates depend on, for a checkpoint."""
-        return {"largest": self._largest, **self._radius.state()}
+        return {"largest": self._largest, **self._fastest.memory()}
 
-    def restore(self, state: dict) -> None:
-        """Take over what ``state`` returned."""
-        self._largest = state["largest"]
-        self._radius.restore(state)
+    def recall(self, memory: dict) -> None:
+        """Take over what ``memory`` returned."""
+        self._largest = memory["largest"]
+        self._fastest.recall(memory)
 
     def follow(self, step) -> None:
         """Check the rate if the increments have doubled since it was last checked."""
@@ -92,11 +92,11 @@ class RateWatch:
     def check(self, state) -> None:
         """Raise StepFailure when the step has come to lie above the limit of stability."""
         integrator = self.integrator
-        integrator.spectral_radius = self._radius.estimate(state)
-        limit = integrator.method.limit / integrator.spectral_radius
+        integrator.fastest_rate = self._fastest.estimate(state)
+        limit = integrator.method.limit / integrator.fastest_rate
         if integrator.size > GROWN * limit:
             raise StepFailure(
-                f"the fastest rate has grown to {integrator.spectral_radius:.3g}, "
+                f"the fastest rate has grown to {integrator.fastest_rate:.3g}, "
                 f"the largest stable step shrunk to {limit:.3g}",
                 state,
             )

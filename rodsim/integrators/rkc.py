@@ -15,7 +15,7 @@ import numpy as np
 from rodsim.case.methods import METHODS
 from rodsim.errors import StepFailure
 from rodsim.integrators.defect import Defect
-from rodsim.integrators.spectral import SpectralRadius
+from rodsim.integrators.fastest_rate import FastestRate
 from rodsim.integrators.step import Step
 from rodsim.scene.loop import to_increments
 from rodsim.scene.state import State
@@ -25,10 +25,10 @@ DAMPING = 2.0 / 13.0
 SAFETY = 0.8
 FILTER = 4.0  # b of the filter H211b: larger is smoother
 MOST_GROWTH = 3.0
-RADIUS_SAFETY = 1.1  # the power iteration comes from below
+RATE_SAFETY = 1.1  # the estimate comes from below
 FEWEST_STAGES = 4  # with fewer, nonlinear terms have an error constant of their own
 MOST_TRAVEL = 1.0  # of the strain twist in a step: 1.4 rad of a wave
-REFRESH = 25  # accepted steps between estimates of the spectral radius
+REFRESH = 25  # accepted steps between estimates of the fastest rate
 MOST_STAGES = 2000  # rounding grows as s^2 and is then still below 1e-9 of the increment
 
 
@@ -82,7 +82,7 @@ def error_constant(s: int) -> float:
 
 class RKC:
     """Adaptive RKC. ``tolerance`` bounds the local error of a step, in ``RodSystem.size_of``.
-    ``longest`` : no step is longer than this.
+    ``max_size`` : no step is longer than this.
     """
 
     method = METHODS["rkc"]
@@ -91,15 +91,15 @@ class RKC:
         self,
         system: RodSystem,
         tolerance: float,
-        radius: SpectralRadius | None = None,
-        longest: float = math.inf,
+        fastest: FastestRate | None = None,
+        max_size: float = math.inf,
     ):
         self.system = system
         self.tolerance = tolerance
-        self.longest = longest
+        self.max_size = max_size
         self.accepted = self.rejected = self.max_stages = 0
-        self.spectral_radius = math.nan
-        self._radius = radius or SpectralRadius(system)
+        self.fastest_rate = math.nan
+        self._fastest = fastest or FastestRate(system)
         self._size = None
         self._rate = None  # velocities at the end of the last step
         self._previous = None  # (step size, error) of the last accepted and corrected step
@@ -112,7 +112,7 @@ class RKC:
             f0 = system.velocities(state.time, state, system.zeros(), system.zeros())
         while state.time < end:
             if self.accepted % REFRESH == 0:
-                self._estimate_radius(state, f0)
+                self._estimate_rate(state, f0)
             if self._size is None:
                 self._size = self._first_size(state, f0, end)
             size, y, f1, velocities = self._accepted(state, f0, end)
@@ -124,35 +124,36 @@ class RKC:
             yield Step(system, self.accepted, state, size, y, after, (f0, f1))
             state, f0 = after, velocities
 
-    def state(self) -> dict:
+    def memory(self) -> dict:
         """Return all memory and the counters, for a checkpoint; what is not there yet is NaN."""
         numbers, nothing = self.system.size, math.nan
         return {
             "accepted": self.accepted,
             "rejected": self.rejected,
             "max_stages": self.max_stages,
-            "spectral_radius": self.spectral_radius,
+            "spectral_radius": self.fastest_rate,
             "size": nothing if self._size is None else self._size,
             "previous": np.array(self._previous or (nothing, nothing)),
             "rate": np.full(numbers, nothing) if self._rate is None else self._rate,
-            **self._radius.state(),
-            **self._defect.state(numbers),
+            **self._fastest.memory(),
+            **self._defect.memory(numbers),
         }
 
-    def restore(self, state: dict) -> None:
-        """Take over what ``state`` returned."""
-        for name in ("accepted", "rejected", "max_stages", "spectral_radius"):
-            setattr(self, name, state[name])
-        self._size = None if math.isnan(state["size"]) else state["size"]
-        previous = state["previous"].tolist()
+    def recall(self, memory: dict) -> None:
+        """Take over what ``memory`` returned."""
+        for name in ("accepted", "rejected", "max_stages"):
+            setattr(self, name, memory[name])
+        self.fastest_rate = memory["spectral_radius"]
+        self._size = None if math.isnan(memory["size"]) else memory["size"]
+        previous = memory["previous"].tolist()
         self._previous = None if math.isnan(previous[0]) else tuple(previous)
-        self._rate = None if np.isnan(state["rate"]).any() else state["rate"]
-        self._radius.restore(state)
-        self._defect.restore(state)
+        self._rate = None if np.isnan(memory["rate"]).any() else memory["rate"]
+        self._fastest.recall(memory)
+        self._defect.recall(memory)
 
     def attempt(self, state: State, f0: np.ndarray, size: float):
         """Return (increment, rate at its end, velocities at its end, scaled error) of a trial."""
-        s = stages_for(size, self.spectral_radius)
+        s = stages_for(size, self.fastest_rate)
         self.max_stages = max(self.max_stages, s)
         table, c, n = coefficients(s), error_constant(s), self.system.rod_size
         g = self._defect.correction(size, c)
@@ -185,7 +186,7 @@ class RKC:
             self._size = size * (max(0.1, SAFETY * error**-0.25) if math.isfinite(error) else 0.1)
             if not self._size > 1e-13 * end:
                 raise StepFailure(f"no step is accepted, down to a size of {self._size:.2g}", state)
-            self._estimate_radius(state, f0)
+            self._estimate_rate(state, f0)
 
     def _error(self, size, c, y, f0, f1, g):
         """Return the local error that the correction has left, over the tolerance."""
@@ -211,8 +212,8 @@ class RKC:
 
     def _limited(self, left):
         """Return the size to try: never a sliver before the end, never too many stages."""
-        size = min(self._size, self.longest, (MOST_STAGES**2 - 1.0) / (1.54 * self.spectral_radius))
-        if size >= 0.9 * left and left <= self.longest:
+        size = min(self._size, self.max_size, (MOST_STAGES**2 - 1.0) / (1.54 * self.fastest_rate))
+        if size >= 0.9 * left and left <= self.max_size:
             return left
         return min(size, 0.5 * left)
 
@@ -228,15 +229,15 @@ class RKC:
                 raise StepFailure("a drive changes faster than steps can follow", state)
         return size
 
-    def _estimate_radius(self, state, f0):
-        rho = self._radius.estimate(state, f0)
+    def _estimate_rate(self, state, f0):
+        rho = self._fastest.estimate(state, f0)
         if not math.isfinite(rho):
             raise StepFailure("the rates of change are not finite", state)
-        self.spectral_radius = max(RADIUS_SAFETY * rho, 1e-300)
+        self.fastest_rate = max(RATE_SAFETY * rho, 1e-300)
 
     def _first_size(self, state, f0, end):
         """Return a first step from the change of the rate over a step of 1/rho."""
-        trial = min(1.0 / self.spectral_radius, end)
+        trial = min(1.0 / self.fastest_rate, end)
         f1 = self.system.rate(state.time + trial, state, trial * f0, self.system.zeros())
         n, w = self.system.rod_size, self.system.weights  # a guess: one norm over all rods will do
         change = trial * np.sqrt(np.mean(np.square((f1 - f0)[:n] * w[:n]))) / self.tolerance

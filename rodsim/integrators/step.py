@@ -70,16 +70,16 @@ class Integrator(Protocol):
     accepted: int
     rejected: int
     max_stages: int
-    spectral_radius: float
+    fastest_rate: float
 
     def steps(self, state: State, end: float):
         """Yield :class:`Step` after :class:`Step` from ``state`` to ``end``."""
 
-    def state(self) -> dict:
+    def memory(self) -> dict:
         """Return what the steps to come depend on beside the state of the rods, and the counters.
 
         Arrays and numbers by name, always of the same shapes and types. Between two steps.
         """
 
-    def restore(self, state: dict) -> None:
-        """Take over what ``state`` returned: ``steps`` then goes on with the same bits."""
+    def recall(self, memory: dict) -> None:
+        """Take over what ``memory`` returned: ``steps`` then goes on with the same bits."""

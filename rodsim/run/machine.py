@@ -3,9 +3,9 @@
 from functools import cached_property
 
 from rodsim.compiled.threads import threads_for
+from rodsim.integrators.fastest_rate import FastestRate
 from rodsim.integrators.limits import Limits, check_step, stability
 from rodsim.integrators.make import make_integrator
-from rodsim.integrators.spectral import SpectralRadius
 from rodsim.run.gap import Gap
 from rodsim.run.watch import Watch
 from rodsim.scene.system import RodSystem
@@ -18,16 +18,16 @@ class Machine:
         """``force``: let a fixed step be above its limit of stability."""
         self.case, self.force = case, force
         self.system = RodSystem(scene)
-        radius = SpectralRadius(self.system)  # one estimate serves all who need the fastest rate
-        self._radius = radius
-        self.integrator = make_integrator(case.time, self.system, radius, case.longest_step)
+        fastest = FastestRate(self.system)  # one estimate serves all who need the fastest rate
+        self._fastest = fastest
+        self.integrator = make_integrator(case.time, self.system, fastest, case.max_step_size)
         self.gap = Gap(scene, case.units.model_dump())
-        self.watch = Watch(case, self.system, self.integrator, None if force else radius)
+        self.watch = Watch(case, self.system, self.integrator, None if force else fastest)
 
     @cached_property
     def limits(self) -> Limits:
         """What each method can do from the initial state."""
-        return stability(self.system, self._radius)
+        return stability(self.system, self._fastest)
 
     def threads(self, asked: int | None):
         """Return the context in which sums run with the threads this scene is worth."""

@@ -141,7 +141,7 @@ class Recorder:
             "steps_accepted": self.integrator.accepted,
             "steps_rejected": self.integrator.rejected,
             "max_stages": self.integrator.max_stages,
-            "spectral_radius": self.integrator.spectral_radius,
+            "spectral_radius": self.integrator.fastest_rate,
             **_threads(),
         }
 

@@ -24,16 +24,16 @@ def capture(machine, recorder, state: State) -> dict:
         "clock": recorder.clock(),
         "evaluations": system.evaluations,
         "evaluation_seconds": system.seconds,
-        **_prefixed("integrator", machine.integrator.state()),
-        **_prefixed("watch", machine.watch.state()),
+        **_prefixed("integrator", machine.integrator.memory()),
+        **_prefixed("watch", machine.watch.memory()),
     }
 
 
 def restore(machine, recorder, snapshot: dict) -> State:
     """Put a run back to a snapshot, return the state of its rods; FileError if it does not fit."""
     _check(snapshot, capture(machine, recorder, machine.system.scene.initial))
-    machine.integrator.restore(_stripped("integrator", snapshot))
-    machine.watch.restore(_stripped("watch", snapshot))
+    machine.integrator.recall(_stripped("integrator", snapshot))
+    machine.watch.recall(_stripped("watch", snapshot))
     machine.system.evaluations = snapshot["evaluations"]
     machine.system.seconds = snapshot["evaluation_seconds"]
     recorder.restore(snapshot["frames"], snapshot["clock"])

@@ -49,31 +49,31 @@ def _in_order(X, D, centre, farthest):
 class Watch:
     """Checks that every value is finite, that no rod has left all bounds, and the fastest rate."""
 
-    def __init__(self, case, system, integrator, radius=None):
-        """``radius``: the SpectralRadius that follows the rate of a fixed step, or None."""
+    def __init__(self, case, system, integrator, fastest=None):
+        """``fastest``: the FastestRate that follows the rate of a fixed step, or None."""
         self.system, self._command = system, case.source.command
         self.output = DEFAULT_OUTPUT  # what the command of a remedy writes
         fixed = not integrator.method.adaptive
         self.remedy = (_fixed_step_remedy if fixed else _adaptive_remedy)(case, system)
-        self._rates = RateWatch(system, integrator, radius) if fixed and radius else None
+        self._rates = RateWatch(system, integrator, fastest) if fixed and fastest else None
         self.wall, initial = system.scene.wall, system.scene.initial.position
         self.centre = initial.mean(axis=1, keepdims=True)
         extent = np.abs(initial - self.centre).max()
         self.farthest = FARTHEST * max(extent, system.scene.length_scale)
         self.last_good_frame = 0
 
-    def state(self) -> dict:
+    def memory(self) -> dict:
         """Return what later checks depend on, for a checkpoint."""
-        rates = self._rates.state() if self._rates else {}
+        rates = self._rates.memory() if self._rates else {}
         bounds = {"centre": self.centre, "farthest": self.farthest}
         return {**bounds, "last_good_frame": self.last_good_frame, **rates}
 
-    def restore(self, state: dict) -> None:
-        """Take over what ``state`` returned."""
-        self.centre, self.farthest = state["centre"], state["farthest"]
-        self.last_good_frame = state["last_good_frame"]
+    def recall(self, memory: dict) -> None:
+        """Take over what ``memory`` returned."""
+        self.centre, self.farthest = memory["centre"], memory["farthest"]
+        self.last_good_frame = memory["last_good_frame"]
         if self._rates:
-            self._rates.restore(state)
+            self._rates.recall(memory)
 
     def check(self, step: Step) -> None:
         """Raise DivergedError if the state at the end of a step means nothing."""

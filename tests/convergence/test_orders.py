@@ -5,9 +5,9 @@ import pytest
 from scenes import difference, last, system_of
 
 from rodsim.integrators.euler import Euler
+from rodsim.integrators.fastest_rate import FastestRate
 from rodsim.integrators.rk4 import RK4
 from rodsim.integrators.rkc import RKC
-from rodsim.integrators.spectral import SpectralRadius
 
 # Few points and a blob of 3 spacings: stiff enough to need stages, cheap enough without the JIT.
 SCENE = ("open_rod", "rods.rod.shape.points=12", "fluid.epsilon.spacings=3")
@@ -26,8 +26,8 @@ class FixedRKC(RKC):
     def _accepted(self, state, f0, end):
         return self.step, *self.attempt(state, f0, self.step)[:3]
 
-    def _estimate_radius(self, state, f0):
-        self.spectral_radius = (self.STAGES - 0.5) ** 2 / (1.54 * self.step)
+    def _estimate_rate(self, state, f0):
+        self.fastest_rate = (self.STAGES - 0.5) ** 2 / (1.54 * self.step)
 
 
 class PlainRKC2(FixedRKC):
@@ -148,10 +148,10 @@ def ring_frames(tolerance):
 
 @pytest.mark.parametrize(("method", "limit"), [(Euler, 2.0), (RK4, 2.785)])
 def test_stable_below_the_limit_of_the_fastest_rate_and_not_above(method, limit, settled):
-    """0.97 of limit/rho decays, 1.05 blows up: rho by power iteration is good to a few 1e-4."""
+    """0.97 of limit/rho decays, 1.05 blows up: rho by Arnoldi iteration is good to a few 1e-4."""
     system, start = settled
     rate = system.velocities(0.0, start, system.zeros(), system.zeros())
-    rho = SpectralRadius(system).estimate(start, rate, tolerance=1e-5)
+    rho = FastestRate(system).estimate(start, rate, tolerance=1e-5)
     spans = []
     for share in (0.97, 1.05):
         integrator = method(system, share * limit / rho)

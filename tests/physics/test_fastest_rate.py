@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from rodsim.case import case_from_mapping
+from rodsim.integrators.fastest_rate import FastestRate
 from rodsim.integrators.limits import stability
-from rodsim.integrators.spectral import SpectralRadius
 from rodsim.scene.build import build_scene
 from rodsim.scene.system import RodSystem
 
@@ -48,7 +48,7 @@ def test_the_fastest_rate_is_that_of_the_jacobian(points, spacings, blob):
     system = system_of(points, spacings, blob)
     exact = largest_eigenvalue(system)
     assert stability(system).rate == pytest.approx(exact, rel=5e-3)
-    first = SpectralRadius(system)
+    first = FastestRate(system)
     state = system.scene.initial
     rate = system.rate(0.0, state, system.zeros(), system.zeros())
     for _ in range(3):  # what rkc goes by, with 10 % more: the first estimate, then refreshed

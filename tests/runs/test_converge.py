@@ -109,11 +109,16 @@ def test_no_points_for_a_rod_from_a_file(tmp_path):
         study("points", overrides=(shape, "fluid.epsilon=0.4", "time.end=1e-6"))
 
 
-def test_rows_that_do_not_fit_into_the_time_are_left_out():
-    made, results = study("step", overrides=("rods.rod.shape.points=5", "time.end=1e-3"),
-                          max_wall=1e9)  # fmt: skip
-    made._end = 0.0
-    assert made._result(results[0][1].row, None, None).status.startswith("left out: would take")
+def test_tracers_count_and_have_an_error_of_their_own():
+    """Where they decide the steps, their error falls with the tolerance, and the table has it."""
+    tracers = "tracers={near: [[0.3, 0.2, 1.0], [0.1, -0.4, 2.0]]}"
+    made, results = study(
+        "tolerance", overrides=("rods.rod.shape.points=5", "time.end=1e-3", tracers)
+    )
+    errors = [result.errors.tracers for _, result in results]
+    assert all(error is not None for error in errors)
+    assert errors[-1] < 0.1 * max(errors)
+    assert "tracers" in text(made)
 
 
 def call(*arguments):

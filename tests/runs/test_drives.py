@@ -37,9 +37,9 @@ def test_a_pulse_shorter_than_a_step_at_rest_is_seen(tmp_path):
 
 def test_the_longest_step_is_an_interval_where_something_is_driven(tmp_path):
     driven = make(tmp_path, PULSE)
-    assert driven.longest_step == 1e-4
-    assert make(tmp_path, PULSE, ["time.max_step=3e-5"]).longest_step == 3e-5
-    assert make(tmp_path, PULSE, ["rods.tail.strain_twist=['0.3*s', 0, 0]"]).longest_step == np.inf
+    assert driven.max_step_size == 1e-4
+    assert make(tmp_path, PULSE, ["time.max_step=3e-5"]).max_step_size == 3e-5
+    assert make(tmp_path, PULSE, ["rods.tail.strain_twist=['0.3*s', 0, 0]"]).max_step_size == np.inf
 
 
 @pytest.mark.compiled

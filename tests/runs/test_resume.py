@@ -350,7 +350,7 @@ def test_another_machine_or_other_versions_are_warned_of_once(tmp_path, changed)
     path, listener = tmp_path / "out.h5", after(3)
     listener.warn = (said := []).append
     with suppress(StoppedError):
-        simulate(make(tmp_path, PLANAR), path, listener=after(4))
+        simulate(make(tmp_path, PLANAR), path, stop=after(4))
     with h5py.File(path, "r+") as file:
         for name, text in changed.items():
             file["runtime"].attrs.modify(name, np.bytes_(text))
@@ -368,7 +368,7 @@ def test_a_file_that_does_not_name_its_machine_goes_on(tmp_path):
     simulate(make(tmp_path, PLANAR), tmp_path / "whole.h5")
     path = tmp_path / "out.h5"
     with suppress(StoppedError):
-        simulate(make(tmp_path, PLANAR), path, listener=after(4))
+        simulate(make(tmp_path, PLANAR), path, stop=after(4))
     with h5py.File(path, "r+") as file:
         for name in machine():
             del file["runtime"].attrs[name]
@@ -381,7 +381,7 @@ def test_a_file_that_does_not_name_its_machine_goes_on(tmp_path):
 def test_a_file_that_was_repacked_says_how_it_goes_on(tmp_path, layout):
     path, packed = tmp_path / "out.h5", tmp_path / "packed.h5"
     with suppress(StoppedError):
-        simulate(make(tmp_path, PLANAR), path, listener=after(4))
+        simulate(make(tmp_path, PLANAR), path, stop=after(4))
     subprocess.run(["h5repack", "-l", layout, path, packed], check=True)
     with pytest.raises(FileError, match=r"laid out anew .* a later --set time.end="):
         resume(packed)

@@ -130,17 +130,19 @@ def test_source_remembers_text_and_overrides(load, tmp_path):
     assert case.source.text == RING
     assert case.source.overrides == ("time.end=0.3",)
     path = tmp_path / "case.yaml"
-    assert str(case.problem("rods.ring.shape.radius", "is odd")) == (
+    assert str(case.source.problem("rods.ring.shape.radius", "is odd")) == (
         f"{path}:6: rods.ring.shape.radius = 2.5 (um): is odd"
     )
-    assert str(case.problem(("time", "end"), "is odd")) == "--set: time.end = 0.3 (s): is odd"
+    assert (
+        str(case.source.problem(("time", "end"), "is odd")) == "--set: time.end = 0.3 (s): is odd"
+    )
 
 
 def test_units_of_messages_are_the_cases_own(load):
     case = load(RING + "units: {length: mm, mass: kg, time: h}\n")
-    assert case.problem("fluid.viscosity", "").unit == "kg mm^-1 h^-1"
-    assert case.problem("rods.ring.moduli.bending.0", "").unit == "kg mm^3 h^-2"
-    assert case.problem("rods.ring.moduli.stretch", "").unit == "kg mm h^-2"
+    assert case.source.problem("fluid.viscosity", "").unit == "kg mm^-1 h^-1"
+    assert case.source.problem("rods.ring.moduli.bending.0", "").unit == "kg mm^3 h^-2"
+    assert case.source.problem("rods.ring.moduli.stretch", "").unit == "kg mm h^-2"
 
 
 def test_coarse_rod_is_a_warning(load):

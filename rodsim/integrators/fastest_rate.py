@@ -11,7 +11,7 @@ from rodsim.scene.system import RodSystem
 PERTURBATION = 1e-6  # rad, and of the length of a rod
 
 
-class SpectralRadius:
+class FastestRate:
     """Arnoldi iteration in the scaled norm (positions relative to the length of their rod).
 
     The Jacobian is never formed: J v is (f(y + d v) - f(y))/d. Its largest eigenvalues lie close
@@ -31,13 +31,13 @@ class SpectralRadius:
         self.system = system
         self.vector = self._noise = None
 
-    def state(self) -> dict:
+    def memory(self) -> dict:
         """Return what later estimates depend on, for a checkpoint; no vector yet is zeros."""
         return {"vector": np.zeros(self.system.rod_size) if self.vector is None else self.vector}
 
-    def restore(self, state: dict) -> None:
-        """Take over what ``state`` returned."""
-        self.vector = state["vector"] if state["vector"].any() else None
+    def recall(self, memory: dict) -> None:
+        """Take over what ``memory`` returned."""
+        self.vector = memory["vector"] if memory["vector"].any() else None
 
     def estimate(
         self, state: State, rate: np.ndarray | None = None, tolerance: float | None = None
