@@ -9,6 +9,18 @@ SI = {
     "s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0,
 }  # fmt: skip
 
+LENGTHS = ("m", "cm", "mm", "um", "µm", "nm")
+
+
+def length_factor(unit: str, other: str) -> float | None:
+    """Return how many ``other`` a length of 1 ``unit`` is, or None where one is not known."""
+    unit, other = (name.replace("\N{GREEK SMALL LETTER MU}", "µ") for name in (unit, other))
+    if unit == other:
+        return 1.0
+    if unit not in LENGTHS or other not in LENGTHS:
+        return None
+    return float(f"{SI[unit] / SI[other]:.12g}")
+
 
 def unit_text(dimension, units: dict) -> str:
     """Return e.g. ``g um^2 s^-2`` for the exponents (1, 2, -2) of (mass, length, time).

@@ -1,4 +1,4 @@
-"""Expressions in s, t and the parameters, as in ``-k**2*b*sin(k*s + sigma*t)``.
+"""Expressions in s, t or other variables and parameters, as in ``-k**2*b*sin(k*s + sigma*t)``.
 
 The text is parsed by Python's own parser, every node is checked against a short whitelist, and what
 is left is turned into nested numpy calls. Nothing is ever compiled or executed, so a case file
@@ -41,6 +41,8 @@ _ONE_ARGUMENT = {
 _MANY_ARGUMENTS = {"min": np.minimum, "max": np.maximum}
 FUNCTIONS = (*_ONE_ARGUMENT, *_MANY_ARGUMENTS, "where")
 RESERVED = ("s", "t", "pi", *FUNCTIONS)
+NATURAL = ("natural_1", "natural_2", "natural_3")  # the rod's own strain twist, as it is built
+VARIABLES = ("s", "t", *NATURAL)
 
 _REFUSED = {
     ast.Attribute: "attribute access (a dot after a name) is not allowed",
@@ -59,7 +61,7 @@ _ODD_CHARACTER_HINTS = {
     '"': "text in quotes is not allowed",
 }
 
-Function = Callable[[np.ndarray, np.ndarray], np.ndarray]
+Function = Callable[..., np.ndarray]  # of the variables, in order
 Node = np.float64 | Function  # constants are folded: parameters cost nothing later
 
 
@@ -68,28 +70,48 @@ class ExpressionError(ValueError):
 
 
 class Expression:
-    """A function of arc length s and time t, with the parameters bound to their values.
+    """A function of s, t and natural_1..3, or other variables, with the parameters bound.
 
-    Calling it as ``expression(s, t)`` returns a float64 array of the shape that ``s`` and ``t``
-    broadcast to; overflow and invalid operations give inf and nan without a warning. Raises
-    ExpressionError on construction.
+    Calling it as ``expression(s, t)``, the variables in their order, returns a float64 array of the
+    shape that they broadcast to; overflow and invalid operations give inf and nan without a
+    warning. Raises ExpressionError on construction.
     """
 
-    def __init__(self, text: str, parameters: Mapping[str, float] | None = None):
+    def __init__(
+        self,
+        text: str,
+        parameters: Mapping[str, float] | None = None,
+        variables: tuple[str, ...] = VARIABLES,
+    ):
         self.text = " ".join(text.split())
         self.parameters = {name: float(value) for name, value in (parameters or {}).items()}
-        builder = _Builder(self.parameters)
+        self.variables = variables
+        builder = _Builder(self.parameters, variables)
         with np.errstate(all="ignore"):
             self._function = builder.build(_parse(self.text), 0)
-        self.uses_s = "s" in builder.used
-        self.uses_t = "t" in builder.used
+        self.used = frozenset(builder.used)
 
-    def __call__(self, s: np.ndarray, t: np.ndarray | float) -> np.ndarray:
-        """Return the values at arc lengths ``s`` and times ``t``."""
-        s, t = np.asarray(s, dtype=np.float64), np.asarray(t, dtype=np.float64)
-        result = np.empty(np.broadcast_shapes(s.shape, t.shape))
+    @property
+    def uses_s(self) -> bool:
+        """Whether it depends on arc length."""
+        return "s" in self.used
+
+    @property
+    def uses_t(self) -> bool:
+        """Whether it depends on time."""
+        return "t" in self.used
+
+    @property
+    def uses_natural(self) -> bool:
+        """Whether it depends on the rod's own strain twist."""
+        return not self.used.isdisjoint(NATURAL)
+
+    def __call__(self, *values: np.ndarray | float) -> np.ndarray:
+        """Return the values at some values of the variables; those not used may be left out."""
+        arrays = [np.asarray(value, dtype=np.float64) for value in values]
+        result = np.empty(np.broadcast_shapes(*(array.shape for array in arrays)))
         with np.errstate(all="ignore"):
-            result[...] = _value(self._function, s, t)
+            result[...] = _value(self._function, *arrays)
         return result
 
     def __eq__(self, other: object) -> bool:
@@ -102,15 +124,15 @@ class Expression:
         return f"Expression({self.text!r}, {self.parameters!r})"
 
     def __reduce__(self):  # closures cannot be pickled; the text can
-        return Expression, (self.text, self.parameters)
+        return Expression, (self.text, self.parameters, self.variables)
 
     def _identity(self) -> tuple:
-        return self.text, tuple(sorted(self.parameters.items()))
+        return self.text, tuple(sorted(self.parameters.items())), self.variables
 
 
 def reserved_name(name: str) -> str | None:
     """Return why a parameter cannot have this name, or None when it can."""
-    if name in RESERVED:
+    if name in RESERVED or name in NATURAL:
         return f"'{name}' already has a meaning in expressions: choose another name"
     if keyword.iskeyword(name):
         return f"'{name}' is a word of the expression language: choose another name"
@@ -137,15 +159,15 @@ def _parse(text: str) -> ast.expr:
         raise ExpressionError("not an expression: nested too deep") from None
 
 
-def _value(node: Node, s: np.ndarray, t: np.float64) -> np.ndarray | np.float64:
-    return node(s, t) if callable(node) else node
+def _value(node: Node, *values: np.ndarray) -> np.ndarray | np.float64:
+    return node(*values) if callable(node) else node
 
 
 def _apply(function: Callable, *nodes: Node) -> Node:
     """Return the function of some nodes as a node, worked out at once if they are constants."""
     if not any(callable(node) for node in nodes):
         return np.float64(function(*nodes))
-    return lambda s, t: function(*(_value(node, s, t) for node in nodes))
+    return lambda *values: function(*(_value(node, *values) for node in nodes))
 
 
 def _compared(comparison: Callable) -> Callable:
@@ -160,8 +182,9 @@ def _chosen(condition, if_true, if_false):
 class _Builder:
     """Turns a syntax tree into nodes, refusing all that is not on the whitelist."""
 
-    def __init__(self, parameters: Mapping[str, float]):
+    def __init__(self, parameters: Mapping[str, float], variables: tuple[str, ...]):
         self.parameters = parameters
+        self.variables = variables
         self.used: set[str] = set()
 
     def build(self, tree: ast.expr, depth: int) -> Node:
@@ -193,17 +216,20 @@ class _Builder:
             raise ExpressionError("a number is too large") from None
 
     def _name(self, name: str) -> Node:
-        if name in ("s", "t"):
+        if name in self.variables:
             self.used.add(name)
-            return (lambda s, t: s) if name == "s" else (lambda s, t: t)
+            place = self.variables.index(name)
+            return lambda *values: values[place]
         if name == "pi":
             return np.float64(np.pi)
         if name in self.parameters:
             return np.float64(self.parameters[name])
         if name in FUNCTIONS:
             raise ExpressionError(f"'{name}' is a function: write {name}(...)")
-        hint = did_you_mean(name, (*RESERVED, *self.parameters))
-        known = f": it can use {one_of(['s', 't', 'pi', *self.parameters])}"
+        variables = [name for name in self.variables if name not in NATURAL]
+        known = [*variables, "pi", *self.parameters]
+        hint = did_you_mean(name, (*known, *FUNCTIONS))
+        known = f": it can use {one_of(known)}"
         raise ExpressionError(f"unknown name '{clipped(name)}'{hint or known}")
 
     def _operator(self, operator: ast.AST) -> Callable:

@@ -97,6 +97,14 @@ def bound_expression(text: Any, info: ValidationInfo) -> Expression:
     return Expression(text, parameters)
 
 
+def curve_expression(text: Any, info: ValidationInfo) -> Expression:
+    """Return the expression in u, along a curve, with the case's parameters."""
+    parameters = (info.context or {}).get("parameters", {})
+    if "u" in parameters:
+        raise ValueError("'u' runs along the curve here: choose another name for the parameter u")
+    return Expression(text, parameters, ("u",))
+
+
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
 ParameterName = Annotated[Name, AfterValidator(not_reserved)]
 UnitName = Annotated[str, Field(pattern=r"^[A-Za-zµμ]{1,12}$")]
@@ -133,13 +141,28 @@ def number_tag(value: Any) -> str:
     return "<number>" if tag == "<text>" else tag
 
 
+def text_tag(value: Any) -> str:
+    """Like ``tag_of``, for unions of a text and a list."""
+    return "<text>" if isinstance(value, str) else "<list>"
+
+
 ExpressionText = Annotated[
     Any,
     PlainValidator(bound_expression),
     WithJsonSchema({"type": "string", "description": "expression in s, t and the parameters"}),
 ]
-NumberOrExpression = Annotated[
-    Annotated[Number, Tag("<number>")] | Annotated[ExpressionText, Tag("<text>")],
+CurveText = Annotated[
+    Any,
+    PlainValidator(curve_expression),
+    WithJsonSchema({"type": "string", "description": "expression in u and the parameters"}),
+]
+CurveNumber = Annotated[
+    Annotated[Number, Tag("<number>")] | Annotated[CurveText, Tag("<text>")],
+    Discriminator(tag_of),
+]
+Column = Annotated[
+    Annotated[int, Field(strict=True, ge=1), Tag("<number>")]
+    | Annotated[str, Field(min_length=1), Tag("<text>")],
     Discriminator(tag_of),
 ]
 NumberOrPair = Annotated[

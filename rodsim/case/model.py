@@ -9,13 +9,14 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import AfterValidator, BaseModel, Discriminator, Field, PrivateAttr, Tag
 
-from rodsim.case.expressions import Expression
+from rodsim.case.expressions import NATURAL, Expression
 from rodsim.case.fields import (
+    Column,
     Count,
+    ExpressionText,
     Model,
     Name,
     Number,
-    NumberOrExpression,
     NumberOrPair,
     ParameterName,
     Positive,
@@ -24,6 +25,8 @@ from rodsim.case.fields import (
     not_empty,
     number_tag,
     quantity,
+    tag_of,
+    text_tag,
 )
 from rodsim.case.shapes import Shape
 from rodsim.case.source import Source
@@ -79,21 +82,72 @@ def _pair(value: float | tuple[float, float]) -> tuple[float, float]:
     return value if isinstance(value, tuple) else (value, value)
 
 
+class StrainTable(Model):
+    """A strain twist from a table over s, or over s and t, splined (docs/data.md)."""
+
+    table: str = Field(
+        min_length=1, description="file: columns s and value, or times in the first row"
+    )
+    columns: tuple[Column, Column] | None = Field(
+        None, description="names, or numbers from 1 on, of s and the value"
+    )
+    period: Positive | None = quantity("time", "over s and t: repeats itself", default=None)
+
+
+StrainEntry = Annotated[
+    Annotated[Number, Tag("<number>")]
+    | Annotated[ExpressionText, Tag("<text>")]
+    | Annotated[StrainTable, Tag("<mapping>")],
+    Discriminator(tag_of),
+]
+OWN = tuple(Expression(name) for name in NATURAL)
+
+
 class Rod(Model):
     """One elastic rod."""
 
     shape: Shape = Field(description="how it starts")
     moduli: Moduli = Field(description="elastic moduli")
-    strain_twist: tuple[NumberOrExpression, NumberOrExpression, NumberOrExpression] = quantity(
+    strain_twist: Annotated[
+        Annotated[Literal["natural"], Tag("<text>")]
+        | Annotated[tuple[StrainEntry, StrainEntry, StrainEntry], Tag("<list>")],
+        Discriminator(text_tag),
+    ] = quantity(
         "curvature",
-        "Omega_1, Omega_2, Omega_3: numbers, or expressions in s, t and the parameters",
+        "natural: of the shape as built; or Omega_1, Omega_2, Omega_3: numbers, expressions in s, "
+        "t, natural_1..3 and the parameters, or tables",
         default=(0.0, 0.0, 0.0),
     )
 
     @property
+    def entries(self) -> tuple[float | Expression | StrainTable, ...]:
+        """Omega_1, Omega_2, Omega_3."""
+        return OWN if self.strain_twist == "natural" else self.strain_twist
+
+    @property
     def driven(self) -> bool:
-        """Whether its strain twist depends on time."""
-        return any(isinstance(entry, Expression) and entry.uses_t for entry in self.strain_twist)
+        """Whether its strain twist depends on time, or may: a table is not read yet."""
+        return any(
+            isinstance(entry, StrainTable) or (isinstance(entry, Expression) and entry.uses_t)
+            for entry in self.entries
+        )
+
+    @property
+    def uses_natural(self) -> bool:
+        """Whether its strain twist depends on that of its shape."""
+        return any(isinstance(entry, Expression) and entry.uses_natural for entry in self.entries)
+
+    @property
+    def files(self) -> list[str]:
+        """The files of its shape and its tables, as the case names them."""
+        shape = getattr(self.shape, "path", None)
+        tables = [entry.table for entry in self.entries if isinstance(entry, StrainTable)]
+        return [path for path in (shape, *tables) if path is not None]
+
+    @property
+    def needs_data(self) -> bool:
+        """Whether its strain twist is known only once the rod is built or a table read."""
+        return self.uses_natural or any(isinstance(entry, StrainTable) for entry in self.entries)
 
 
 class Tube(Model):
@@ -202,9 +256,9 @@ class Case(Model):
         """The files it is read from: the case file and those of shapes."""
         if not (self.source and self.source.path):
             return []
-        shapes = [rod.shape.path for rod in self.rods.values() if rod.shape.kind == "file"]
         folder = os.path.dirname(self.source.path)
-        return [self.source.path, *(os.path.join(folder, path) for path in shapes)]
+        found = [path for rod in self.rods.values() for path in rod.files]
+        return [self.source.path, *(os.path.join(folder, path) for path in found)]
 
     @property
     def longest_step(self) -> float:

@@ -1,14 +1,16 @@
-"""The shapes a rod can start from. ``rods/`` turns them into points and triads."""
+"""The shapes a rod can start from. ``scene/`` turns them into points and triads."""
 
 from __future__ import annotations
 
 import math
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag, create_model, model_validator
 
 from rodsim.case.fields import (
     ClosedPoints,
+    Column,
+    CurveNumber,
     Direction,
     Flag,
     Integer,
@@ -119,26 +121,8 @@ class Sine(Placed):
     length: Positive = quantity("length", "arc length")
 
 
-class FileShape(Placed):
-    """Points and triads from an earlier output, or from a text table x y z D1 D2 D3."""
-
-    kind: Literal["file"]
-    path: str = Field(min_length=1, description="output file or text table")
-    frame: Integer | None = Field(None, description="frame of the output; -1 is the last")
-    rod: str | None = Field(None, description="which rod of the output")
-    spacing: Positive | None = quantity("length", "rest spacing of a text table", default=None)
-    closed: Flag = Field(False, description="join the last point of a text table to the first")
-
-    @model_validator(mode="after")
-    def _table_or_output(self):
-        if self.spacing is not None and (self.frame is not None or self.rod is not None):
-            raise ValueError("spacing is for a text table, frame and rod are for an output file")
-        return self
-
-    @property
-    def is_closed(self) -> bool:
-        """Whether a text table is closed; an output file says it itself."""
-        return self.closed
+class FromFile(Placed):
+    """What shapes that need a file share: what is known only once it is read."""
 
     @property
     def ds(self) -> None:
@@ -151,6 +135,119 @@ class FileShape(Placed):
         return None
 
 
+class FileShape(FromFile):
+    """Points and triads from an earlier output, or from a table x y z D1 D2 D3 (docs/data.md)."""
+
+    kind: Literal["file"]
+    path: str = Field(min_length=1, description="output file, table, or export")
+    frame: Integer | None = Field(None, description="frame of several; -1 is the last")
+    rod: str | None = Field(None, description="which rod of several")
+    columns: tuple[Column, ...] | None = Field(
+        None,
+        min_length=12,
+        max_length=12,
+        description="of a table: names, or numbers from 1 on, of x y z D1 D2 D3",
+    )
+    spacing: Positive | None = quantity("length", "rest spacing of a table's points", default=None)
+    closed: Flag | None = Field(None, description="join the last point of a table to the first")
+    as_is: Flag = Field(
+        False, description="take it also where its points, triads and spacing contradict each other"
+    )
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether a table is closed; an output file says it itself."""
+        return bool(self.closed)
+
+
+class CurveBase(FromFile):
+    """A centreline without triads, made even and framed by parallel transport (docs/data.md)."""
+
+    kind: Literal["curve"]
+    path: str | None = Field(None, min_length=1, description="table of its points; or position")
+    position: tuple[CurveNumber, CurveNumber, CurveNumber] | None = quantity(
+        "length", "x, y, z as expressions in u; or path", default=None
+    )
+    points: OpenPoints | None = Field(
+        None,
+        description="of the rod, at equal arc steps; default: as many as the table has, or as "
+        "fit spacing",
+    )
+    columns: tuple[Column, ...] | None = Field(
+        None,
+        min_length=2,
+        max_length=3,
+        description="of a table: names, or numbers from 1 on, of x y z, or of x y (z is 0)",
+    )
+    frame: Integer | None = Field(None, description="of a table: frame of several; -1 is the last")
+    rod: str | None = Field(None, description="of a table: which rod of several")
+    closed: Flag = Field(False, description="join the end to the beginning")
+    smoothing: NotNegative = quantity(
+        "length", "root mean square distance the curve may keep from its points", default=0.0
+    )
+    length: Positive | None = quantity(
+        "length", "length at rest; default: the curve's own", default=None
+    )
+    spacing: Positive | None = quantity(
+        "length", "spacing at rest; default: the curve's own", default=None
+    )
+    turns: Number = Field(
+        0.0, description="turns of the triads about the curve, beside parallel transport"
+    )
+    as_is: Flag = Field(False, description="take it also where something contradicts")
+
+    @model_validator(mode="after")
+    def _one_of_each(self):
+        if (self.path is None) == (self.position is None):
+            raise ValueError("give path or position" + (", not both" if self.path else ""))
+        if self.length is not None and self.spacing is not None:
+            raise ValueError("give length or spacing, not both")
+        if self.closed and self.points == 2:
+            raise ValueError("a closed rod has at least 3 points")
+        if self.position is None:
+            return self._only_for("position", "from", "to")
+        begin, end = self.range
+        if begin is None or end is None:
+            raise ValueError("position needs from and to: where u begins and ends")
+        if begin == end:
+            raise ValueError("from and to must differ")
+        if self.points is None and self.spacing is None:
+            raise ValueError("position needs points, or spacing")
+        return self._only_for("path", "columns", "frame", "rod")
+
+    def _only_for(self, key, *others):
+        given = [name for name in others if getattr(self, name) is not None]
+        if given:
+            raise ValueError(f"{', '.join(given)}: only beside {key}")
+        return self
+
+    @property
+    def range(self) -> tuple[float | None, float | None]:
+        """Where u begins and ends."""
+        return tuple(getattr(self, name) for name in ("from", "to"))
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the end is joined to the beginning."""
+        return self.closed
+
+    @property
+    def segments(self) -> int | None:
+        """Number of segments, or None where only a file or the curve's length knows it."""
+        return None if self.points is None else self.points - (not self.closed)
+
+
+CurveShape = create_model(  # "from" cannot be written as an attribute
+    "CurveShape",
+    __base__=CurveBase,
+    __doc__=CurveBase.__doc__,
+    **{
+        "from": (Number | None, Field(None, description="of position: u at the beginning")),
+        "to": (Number | None, Field(None, description="of position: u at the end")),
+    },
+)
+
+
 def _kind_tag(value: Any) -> str | None:
     kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
     return f"<{kind}>" if isinstance(kind, str) else None
@@ -161,6 +258,7 @@ Shape = Annotated[
     | Annotated[Ring, Tag("<ring>")]
     | Annotated[Helix, Tag("<helix>")]
     | Annotated[Sine, Tag("<sine>")]
-    | Annotated[FileShape, Tag("<file>")],
+    | Annotated[FileShape, Tag("<file>")]
+    | Annotated[CurveShape, Tag("<curve>")],
     Discriminator(_kind_tag),
 ]

@@ -12,12 +12,15 @@ def describe_case(case, refuse=False) -> str:
 
     ``refuse`` : raise CaseError for what a run would refuse, a fixed step above its limit.
     """
+    from rodsim.commands.geometry import describe_start
     from rodsim.integrators.limits import check_step, stability
     from rodsim.scene.system import RodSystem
 
     scene = build_scene(case)
+    system = RodSystem(scene)
     unit = case.units
     lines = [case.title] if case.title else []
+    lines += [f"warning: {problem}" for problem in scene.warnings]
     for r, name in enumerate(scene.rods.names):
         kind = "closed" if scene.rods.closed[r] else "open"
         lines.append(
@@ -29,6 +32,7 @@ def describe_case(case, refuse=False) -> str:
         f"{scene.blob}, epsilon {scene.epsilon:.6g} {unit.length} "
         f"= {scene.epsilon / scene.rods.spacing[0]:.4g} spacings"
     )
+    lines += describe_start(scene, system, unit.model_dump())
     if scene.planar:
         lines.append("planar: only u_y, u_z and w_x are computed")
     for name, count in scene.tracer_groups.items():
@@ -38,7 +42,7 @@ def describe_case(case, refuse=False) -> str:
     how = f"tolerance {time.tolerance:g}" if adaptive else f"step {time.step:g}"
     frames = len(frame_times(time.end, case.interval))
     lines.append(f"time: to {time.end:g} {unit.time} by {time.integrator}, {how}; {frames} frames")
-    limits = stability(RodSystem(scene))
+    limits = stability(system)
     if refuse:
         lines += [f"warning: {problem}" for problem in check_step(case, limits)]
     return "\n".join([*lines, *describe_limits(limits, unit.time)])

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -101,7 +101,8 @@ class Plan:
     times : (T,) of all frames to come. tracers : their number P. fields : names out of ``FIELDS``;
     position is always stored. units : names of the units of ``length``, ``mass`` and ``time``.
     density : whether kinetic energy is stored. checkpoint : the first state of the run, which all
-    later ones are like: arrays and numbers by name.
+    later ones are like: arrays and numbers by name. arrays : by rod, what its strain twist was made
+    from beside the case's text, by name.
     """
 
     case: CaseText
@@ -112,6 +113,7 @@ class Plan:
     units: dict[str, str]
     density: bool
     checkpoint: dict
+    arrays: dict = field(default_factory=dict)
 
     @property
     def points(self) -> int:

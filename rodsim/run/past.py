@@ -67,8 +67,14 @@ class Past:
                 f"{rodsim.__version__}: last digits can differ from those of one run"
             )
 
-    def shape(self, name: str):
-        """Return position, director, spacing, closed of a rod that began as a shape file."""
+    def arrays(self, name: str) -> dict:
+        """Return what the strain twist of a rod was made from."""
+        return self.run.arrays(name)
+
+    def shape(self, name: str, shape):
+        """Return position, director, spacing, closed of a rod that began as a file, else None."""
+        if shape.kind not in ("file", "curve"):
+            return None
         record = {rod.name: rod for rod in self.run.rods}[name]
         nodes = slice(record.first, record.first + record.count)
         position = np.array(self.snapshot["position"][:, nodes])

@@ -47,6 +47,7 @@ def plan_output(case, scene, checkpoint: dict) -> Plan:
         units=case.units.model_dump(),
         density=scene.density is not None,
         checkpoint=checkpoint,
+        arrays=scene.arrays,
     )
 
 

@@ -72,6 +72,8 @@ def simulate(
     started = perf_counter() - summary.compile_seconds
     _refuse_sources(case, output)
     scene = build_scene(case)
+    for problem in scene.warnings:
+        notify(str(problem))
     machine, compile_seconds = _compile(case, scene, force)
     with machine.threads(threads):
         for problem in machine.step_warnings():
@@ -111,7 +113,7 @@ def resume(
             return summary
         for text in past.warnings():
             notify(text)
-        scene = build_scene(past.case, past.shape)
+        scene = build_scene(past.case, past)
         machine, compile_seconds = _compile(past.case, scene, bool(past.snapshot["force"]))
         recorder = Recorder(machine, started, compile_seconds + summary.compile_seconds)
         state = restore(machine, recorder, past.snapshot)

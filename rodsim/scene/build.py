@@ -1,30 +1,28 @@
 """Case -> scene: shapes are built and placed, all rods put into one array, geometry checked."""
 
-from pathlib import Path
-
 import numpy as np
 
-from rodsim.case import check_strain_twist, spacings_differ
+from rodsim.case import spacings_differ
 from rodsim.compiled.constants import HALF_TURN
-from rodsim.errors import CaseError, FileError
-from rodsim.scene.shapes import FORMULAS, place
+from rodsim.errors import CaseError
+from rodsim.scene.rods import build_rods
 from rodsim.scene.state import Rods, Scene, State, StrainTwist
-from rodsim.scene.stored import read_shape
 from rodsim.scene.tracers import tube
 
 PLANE_TOLERANCE = 1e-12  # of the rod's length, as the case file's contract has it
 
 
 def build_scene(case, stored=None) -> Scene:
-    """Return the scene of a validated case.
+    """Return the scene of a validated case; what looks wrong with it is in its ``warnings``.
 
-    ``stored``: called with a rod's name instead of reading its shape file, where it has one;
-    returns position, director, spacing, closed.
+    ``stored``: an earlier run of the case, see :func:`rodsim.scene.rods.build_rods`.
 
     Raises CaseError for what only the geometry can tell (spacings that differ, a planar scene
-    that is not, triads a half-turn apart) and FileError for a shape file.
+    that is not, triads a half-turn apart, a table that contradicts itself) and FileError for a
+    shape file or table.
     """
-    built = [_build_rod(case, name, rod, stored) for name, rod in case.rods.items()]
+    found = build_rods(case, stored)
+    built = found.rods
     rods = _tables(case, built)
     position = np.ascontiguousarray(np.concatenate([rod[0] for rod in built], axis=1))
     director = np.ascontiguousarray(np.concatenate([rod[1] for rod in built], axis=2))
@@ -38,7 +36,7 @@ def build_scene(case, stored=None) -> Scene:
     tracer, groups = _tracers(case, rods, built)
     return Scene(
         rods=rods,
-        strain_twist=StrainTwist(rods, [rod.strain_twist for rod in case.rods.values()]),
+        strain_twist=StrainTwist(rods, found.entries),
         epsilon=epsilon,
         viscosity=case.fluid.viscosity,
         blob=case.fluid.blob,
@@ -46,40 +44,9 @@ def build_scene(case, stored=None) -> Scene:
         density=case.fluid.density,
         tracer_groups=groups,
         initial=State(0.0, position, director, tracer),
+        arrays=found.arrays,
+        warnings=tuple(found.warnings),
     )
-
-
-def _folder(case):
-    return Path(case.source.path).parent if case.source and case.source.path else Path()
-
-
-def _build_rod(case, name, rod, stored):
-    """Return position, director, spacing, closed of one rod, placed."""
-    shape = rod.shape
-    if shape.kind == "file":
-        if stored is not None:
-            return stored(name)
-        try:
-            position, director, spacing, closed = read_shape(shape, _folder(case))
-        except FileError as error:
-            where = case.source.problem(("rods", name, "shape", "path"), str(error))
-            raise FileError(str(where)) from error
-        _check_stored(case, name, rod, spacing, position.shape[1] - (not closed))
-    else:
-        position, director = FORMULAS[shape.kind](shape)
-        spacing, closed = shape.ds, shape.is_closed
-    return *place(position, director, shape), spacing, closed
-
-
-def _check_stored(case, name, rod, spacing, segments):
-    """What the case file alone could not tell: the strain twist needs the file's spacing."""
-    if spacing is None:
-        reason = "missing: a text table needs the spacing of its points at rest"
-        raise CaseError([case.source.problem(("rods", name, "shape", "spacing"), reason)])
-    errors, _ = check_strain_twist(rod, spacing, segments, case.time.end)
-    if errors:
-        where = ("rods", name)
-        raise CaseError([case.source.problem((*where, *path), reason) for path, reason in errors])
 
 
 def _tables(case, built):

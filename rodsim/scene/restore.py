@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from rodsim.case import case_from_mapping
 from rodsim.errors import CaseError, FileError
 from rodsim.scene.build import _epsilon
 from rodsim.scene.state import Rods, Scene, State, StrainTwist
+from rodsim.scene.strain import bind
 
 
 def restore_scene(run) -> Scene:
@@ -22,7 +24,7 @@ def restore_scene(run) -> Scene:
         raise FileError(f"{run.path}: has no frames yet ({run.status})")
     try:
         case = case_from_mapping(json.loads(run.case_resolved), path=str(run.path))
-        entries = [case.rods[rod.name].strain_twist for rod in run.rods]
+        entries = [_entries(run, case.rods[rod.name], rod) for rod in run.rods]
     except (ValueError, KeyError, TypeError, RecursionError, CaseError) as error:
         raise FileError(f"{run.path}: damaged: the case in it cannot be used: {error}") from error
     rods = _rods(run.rods)
@@ -37,6 +39,14 @@ def restore_scene(run) -> Scene:
         tracer_groups={},
         initial=stored_state(run, 0),
     )
+
+
+def _entries(run, rod, record):
+    """Return the strain twist of a rod, from the arrays that the file keeps of it."""
+    no_triads = np.empty((3, 3, 0))
+    kept = run.arrays(record.name) if rod.needs_data else {}
+    entries, _ = bind(rod, no_triads, record.spacing, record.closed, Path(run.path).parent, kept)
+    return entries
 
 
 def stored_state(run, frame: int) -> State:

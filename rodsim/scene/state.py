@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -66,7 +66,11 @@ class Rods:
 
 @dataclass(frozen=True)
 class Scene:
-    """A case made ready to run: rods, fluid, intrinsic strain twist, initial state."""
+    """A case made ready to run: rods, fluid, intrinsic strain twist, initial state.
+
+    ``arrays``: by rod, what its strain twist was made from beside the case's text, by name.
+    ``warnings``: Problems that do not stop a run and that only the geometry could tell.
+    """
 
     rods: Rods
     strain_twist: StrainTwist
@@ -77,6 +81,8 @@ class Scene:
     density: float | None
     tracer_groups: dict[str, int]
     initial: State
+    arrays: dict = field(default_factory=dict)
+    warnings: tuple = ()
 
     @property
     def length_scale(self) -> float:
