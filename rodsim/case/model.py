@@ -9,11 +9,9 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import AfterValidator, BaseModel, Discriminator, Field, PrivateAttr, Tag
 
-from rodsim.case.expressions import NATURAL, Expression
+from rodsim.case.expressions import Expression
 from rodsim.case.fields import (
-    Column,
     Count,
-    ExpressionText,
     Model,
     Name,
     Number,
@@ -25,11 +23,11 @@ from rodsim.case.fields import (
     not_empty,
     number_tag,
     quantity,
-    tag_of,
     text_tag,
 )
 from rodsim.case.shapes import Shape
 from rodsim.case.source import Source
+from rodsim.case.strain import OWN, StrainEntry, StrainTable
 from rodsim.errors import Problem
 
 DEFAULT_FRAMES = 100
@@ -80,27 +78,6 @@ class Moduli(Model):
 
 def _pair(value: float | tuple[float, float]) -> tuple[float, float]:
     return value if isinstance(value, tuple) else (value, value)
-
-
-class StrainTable(Model):
-    """A strain twist from a table over s, or over s and t, splined (docs/data.md)."""
-
-    table: str = Field(
-        min_length=1, description="file: columns s and value, or times in the first row"
-    )
-    columns: tuple[Column, Column] | None = Field(
-        None, description="names, or numbers from 1 on, of s and the value"
-    )
-    period: Positive | None = quantity("time", "over s and t: repeats itself", default=None)
-
-
-StrainEntry = Annotated[
-    Annotated[Number, Tag("<number>")]
-    | Annotated[ExpressionText, Tag("<text>")]
-    | Annotated[StrainTable, Tag("<mapping>")],
-    Discriminator(tag_of),
-]
-OWN = tuple(Expression(name) for name in NATURAL)
 
 
 class Rod(Model):

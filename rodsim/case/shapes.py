@@ -5,53 +5,22 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag, create_model, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
+from rodsim.case.curve import CurveShape
 from rodsim.case.fields import (
     ClosedPoints,
     Column,
-    CurveNumber,
-    Direction,
     Flag,
     Integer,
-    Model,
     NotNegative,
     NotZero,
     Number,
     OpenPoints,
     Positive,
-    Vector,
     quantity,
 )
-
-
-class Rotate(Model):
-    """A turn about an axis through the origin, before the shape is moved to its place."""
-
-    axis: Direction = Field(description="direction of the axis, of any length but 0")
-    degrees: Number = quantity("degrees", "angle, right-handed about the axis")
-
-
-class Placed(Model):
-    """What all shapes share."""
-
-    rotate: Rotate | None = Field(None, description="turn about the origin, done first")
-    origin: Vector = quantity("length", "then the shape is moved by this", default=(0.0, 0.0, 0.0))
-
-    @property
-    def is_closed(self) -> bool:
-        """Whether the last point is joined to the first."""
-        return False
-
-    @property
-    def ds(self) -> float | None:
-        """Arc length between neighbouring points, or None where only a file knows it."""
-        return self.length / (self.points - 1)
-
-    @property
-    def segments(self) -> int | None:
-        """Number of segments, or None where only a file knows it."""
-        return self.points if self.is_closed else self.points - 1
+from rodsim.case.placed import FromFile, Placed
 
 
 class Straight(Placed):
@@ -121,20 +90,6 @@ class Sine(Placed):
     length: Positive = quantity("length", "arc length")
 
 
-class FromFile(Placed):
-    """What shapes that need a file share: what is known only once it is read."""
-
-    @property
-    def ds(self) -> None:
-        """Not known before the file is read."""
-        return None
-
-    @property
-    def segments(self) -> None:
-        """Not known before the file is read."""
-        return None
-
-
 class FileShape(FromFile):
     """Points and triads from an earlier output, or from a table x y z D1 D2 D3 (docs/data.md)."""
 
@@ -158,94 +113,6 @@ class FileShape(FromFile):
     def is_closed(self) -> bool:
         """Whether a table is closed; an output file says it itself."""
         return bool(self.closed)
-
-
-class CurveBase(FromFile):
-    """A centreline without triads, made even and framed by parallel transport (docs/data.md)."""
-
-    kind: Literal["curve"]
-    path: str | None = Field(None, min_length=1, description="table of its points; or position")
-    position: tuple[CurveNumber, CurveNumber, CurveNumber] | None = quantity(
-        "length", "x, y, z as expressions in u; or path", default=None
-    )
-    points: OpenPoints | None = Field(
-        None,
-        description="of the rod, at equal arc steps; default: as many as the table has, or as "
-        "fit spacing",
-    )
-    columns: tuple[Column, ...] | None = Field(
-        None,
-        min_length=2,
-        max_length=3,
-        description="of a table: names, or numbers from 1 on, of x y z, or of x y (z is 0)",
-    )
-    frame: Integer | None = Field(None, description="of a table: frame of several; -1 is the last")
-    rod: str | None = Field(None, description="of a table: which rod of several")
-    closed: Flag = Field(False, description="join the end to the beginning")
-    smoothing: NotNegative = quantity(
-        "length", "root mean square distance the curve may keep from its points", default=0.0
-    )
-    length: Positive | None = quantity(
-        "length", "length at rest; default: the curve's own", default=None
-    )
-    spacing: Positive | None = quantity(
-        "length", "spacing at rest; default: the curve's own", default=None
-    )
-    turns: Number = Field(
-        0.0, description="turns of the triads about the curve, beside parallel transport"
-    )
-    as_is: Flag = Field(False, description="take it also where something contradicts")
-
-    @model_validator(mode="after")
-    def _one_of_each(self):
-        if (self.path is None) == (self.position is None):
-            raise ValueError("give path or position" + (", not both" if self.path else ""))
-        if self.length is not None and self.spacing is not None:
-            raise ValueError("give length or spacing, not both")
-        if self.closed and self.points == 2:
-            raise ValueError("a closed rod has at least 3 points")
-        if self.position is None:
-            return self._only_for("position", "from", "to")
-        begin, end = self.range
-        if begin is None or end is None:
-            raise ValueError("position needs from and to: where u begins and ends")
-        if begin == end:
-            raise ValueError("from and to must differ")
-        if self.points is None and self.spacing is None:
-            raise ValueError("position needs points, or spacing")
-        return self._only_for("path", "columns", "frame", "rod")
-
-    def _only_for(self, key, *others):
-        given = [name for name in others if getattr(self, name) is not None]
-        if given:
-            raise ValueError(f"{', '.join(given)}: only beside {key}")
-        return self
-
-    @property
-    def range(self) -> tuple[float | None, float | None]:
-        """Where u begins and ends."""
-        return tuple(getattr(self, name) for name in ("from", "to"))
-
-    @property
-    def is_closed(self) -> bool:
-        """Whether the end is joined to the beginning."""
-        return self.closed
-
-    @property
-    def segments(self) -> int | None:
-        """Number of segments, or None where only a file or the curve's length knows it."""
-        return None if self.points is None else self.points - (not self.closed)
-
-
-CurveShape = create_model(  # "from" cannot be written as an attribute
-    "CurveShape",
-    __base__=CurveBase,
-    __doc__=CurveBase.__doc__,
-    **{
-        "from": (Number | None, Field(None, description="of position: u at the beginning")),
-        "to": (Number | None, Field(None, description="of position: u at the end")),
-    },
-)
 
 
 def _kind_tag(value: Any) -> str | None:

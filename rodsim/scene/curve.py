@@ -8,7 +8,7 @@ from rodsim.case.fields import MOST_POINTS
 from rodsim.scene.arcs import arc_length, equal_arcs
 from rodsim.scene.data.points import read_points
 from rodsim.scene.frames import plane_normal, transported
-from rodsim.scene.geometry import REFUSE, SAME, Geometry, check_geometry
+from rodsim.scene.geometry import REFUSE, SAME, WARN, WARN_TILT, Geometry
 from rodsim.scene.smoothing import smoothed
 from rodsim.scene.spline import Spline
 from rodsim.scene.stored import Built, find_file, in_unit
@@ -41,13 +41,6 @@ def build_curve(shape, folder, unit) -> Built:
         return built
     spline = Spline(knots.u, knots.position, knots.period)
     _resample(spline, shape, built)
-    if built.errors:
-        return built
-    if not shape.as_is:
-        geometry = Geometry(built.position, built.director, built.spacing, built.closed)
-        errors, warnings = check_geometry(geometry)
-        built.errors += [("points", f"{reason} (as_is: true takes it so)") for reason in errors]
-        built.warnings += [("points", reason) for reason in warnings]
     return built
 
 
@@ -96,7 +89,7 @@ def _gaps(distance, position, shape, points):
         yield f"{apart} the median distance apart: a gap, or an open curve taken as closed?"
     ends = np.linalg.norm(position[-1] - position[0])
     if not shape.closed and len(position) > 3 and ends < (1.0 + REFUSE) * typical:
-        yield f"its ends are {ends / typical:.3g} median distances apart: closed: true closes it"
+        yield f"its ends are {ends / typical:.3g} median distances apart: closed: true joins them"
 
 
 def _from_formula(shape, built):
@@ -122,7 +115,7 @@ def _from_formula(shape, built):
         reason = f"it ends {apart:.4g} from where it begins: does u run over the whole curve?"
         built.errors.append(("closed", reason))
     elif not shape.closed and apart < SAME * distance.sum():
-        built.warnings.append(("position", "ends where it begins: closed: true closes it"))
+        built.warnings.append(("position", "ends where it begins: closed: true joins them"))
     if shape.closed:
         return Knots(u[:-1], position[:-1], float(u[-1]))
     return Knots(u, position, None)
@@ -131,7 +124,8 @@ def _from_formula(shape, built):
 def _smooth(knots, distance, built):
     position = smoothed(knots.u, knots.position, distance, knots.period)
     if position is None:
-        reason = f"nothing of the curve is left: it is within {distance:g} of a straight line"
+        line = "point" if knots.period else "straight line"
+        reason = f"nothing of the curve would be left: it is nearer than that to a {line}"
         built.errors.append(("smoothing", reason))
         return
     after = np.roll(position, -1, axis=0) if knots.period else position[1:]
@@ -169,6 +163,27 @@ def _resample(spline, shape, built):
         built.position, built.director = position.T.copy(), triads.transpose(1, 2, 0).copy()
         given = shape.length / segments if shape.length is not None else shape.spacing
         built.spacing = own / segments if given is None else given
+        if not shape.as_is:
+            _hold(built, own / segments)
+
+
+def _hold(built, step):
+    """Hold the rod against the curve, ``step`` of arc between points, and against its length."""
+    geometry = Geometry(built.position, built.director, step, built.closed)
+    shortest, tilt = geometry.distances.min(), geometry.tilt.max()
+    if shortest < 1.0 - WARN or tilt > WARN_TILT:
+        refused = shortest < 1.0 - REFUSE or np.sin(min(tilt, np.pi / 2)) > REFUSE
+        found = (
+            f"chords down to {shortest:.4g} of the arcs, up to {np.degrees(tilt):.3g} degrees off"
+        )
+        reason = f"{found} D3: more points" + (", smoothing, or as_is: true" if refused else "")
+        (built.errors if refused else built.warnings).append(("points", reason))
+    off = step / built.spacing - 1.0
+    if abs(off) > WARN:
+        refused = abs(off) > REFUSE
+        reason = f"the curve is {1.0 + off:.4g} times as long as the rod at rest"
+        reason += "; as_is: true takes it so" if refused else ""
+        (built.errors if refused else built.warnings).append(("length", reason))
 
 
 def _segments(shape, own, spline):

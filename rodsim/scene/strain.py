@@ -3,7 +3,7 @@
 import numpy as np
 
 from rodsim.case.expressions import Expression
-from rodsim.case.model import StrainTable
+from rodsim.case.strain import StrainTable
 from rodsim.errors import FileError
 from rodsim.forces.strain import strain_twist
 from rodsim.scene.data.functions import Samples, close_period, read_samples
