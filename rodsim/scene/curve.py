@@ -16,6 +16,7 @@ from rodsim.scene.stored import Built, find_file, in_unit
 SAMPLES = 64  # of expressions, for each point of the rod
 FEWEST_SAMPLES, MOST_SAMPLES = 4096, 2**18
 GAP = 10.0  # medians: a distance that looks like a place without points
+STILL = 1e-9  # of the largest speed along the parameter
 SHARPEST = -0.9  # cosine from one tangent to the next
 
 
@@ -141,7 +142,13 @@ def _resample(spline, shape, built):
     def speed(u):
         return np.linalg.norm(spline.slope(u), axis=-1)
 
-    own = arc_length(speed, spline.knots)
+    own, speeds = arc_length(speed, spline.knots), speed(spline.knots)
+    if not speeds.min() > STILL * speeds.max():
+        key = "path" if shape.position is None else "position"
+        built.errors.append(
+            (key, f"the curve turns back at {spline(spline.knots[speeds.argmin()])}")
+        )
+        return
     segments = _segments(shape, own, spline)
     if segments + (not shape.closed) > MOST_POINTS:
         built.errors.append(("spacing", f"would make more than {MOST_POINTS} points"))

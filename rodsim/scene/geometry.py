@@ -80,7 +80,8 @@ def check_geometry(geometry: Geometry, name=str):
     off = np.abs(geometry.distances - 1.0).max()
     if off > WARN:
         (errors if off > REFUSE else warnings).append(_distances(geometry, name))
-    tilt = geometry.tilt.max()
+    near = np.abs(geometry.distances / np.median(geometry.distances) - 1.0) <= REFUSE
+    tilt = geometry.tilt[near].max()  # of a segment that is none, the distance has been told
     if tilt > WARN_TILT:
         against = tilt > np.arcsin(REFUSE)
         (errors if against else warnings).append(_tilt(geometry, name))

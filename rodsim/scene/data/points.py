@@ -51,7 +51,10 @@ def read_points(path, triads, columns=None, frame=None, rod=None) -> Points:
         return _from_npz(path, triads, frame, rod)
     if suffix in (".vertex", ".director"):
         return _from_ibamr(path, triads)
-    table = _xyz(path, frame) if suffix == ".xyz" else read_table(path)
+    if suffix == ".xyz":
+        table, frame = _xyz(path, frame), None
+    else:
+        table = read_table(path)
     table, spacing = _one_rod(table, frame, rod)
     chosen = triad_columns(table, columns) if triads else position_columns(table, columns)
     values, unit = table.floats(chosen), unit_of(table, chosen[:3])
@@ -111,10 +114,9 @@ def _xyz(path, frame):
         starts.append(at)
         at += int(lines[at].split()[0]) + 2
     if not starts or at > len(lines):
-        count, left = (
-            (lines[starts[-1]].split()[0], len(lines) - starts[-1] - 2) if starts else (0, 0)
-        )
-        raise FileError(f"{path}: says {count} atoms and has {max(left, 0)}")
+        count = lines[starts[-1]].split()[0] if starts else "no"
+        left = sum(bool(line.strip()) for line in lines[starts[-1] + 2 :]) if starts else 0
+        raise FileError(f"{path}: says {count} atoms and has {left}")
     number = -1 if frame is None else frame
     if not -len(starts) <= number < len(starts):
         raise FileError(f"{path}: has no frame {number}: {len(starts)} from 0 on")

@@ -1,8 +1,8 @@
 """Text tables as people have them -> rows, names of columns, numbers.
 
 Commas, semicolons, tabs or blanks between the cells; comments after # or %; headers; a byte order
-mark; line ends of any system; Fortran's D exponents; decimal commas where the cells are apart by
-semicolons or tabs. Memory is of the file's size.
+mark; line ends of any system; Fortran's D exponents; decimal commas where the cells are not apart
+by commas. Memory is of the file's size.
 """
 
 from __future__ import annotations
@@ -161,7 +161,7 @@ def _why(cell):
 def _lay_out(table, heads):
     """Find what is between the cells, the width, and the names of the columns."""
     delimiter = table.delimiter = _delimiter(table.rows[-1])
-    if delimiter in (";", "\t"):
+    if delimiter != ",":
         table.rows = [_DECIMAL_COMMA.sub(".", row) for row in table.rows]
     if delimiter and all(row.endswith(delimiter) for row in table.rows):
         table.rows = [row.removesuffix(delimiter) for row in table.rows]
@@ -189,9 +189,10 @@ def _check_widths(table):
 
 
 def _delimiter(row):
+    """Return what is between the cells of a row; None for blanks, also "0,5 1,5" with commas."""
     for sign in (";", "\t", ","):
         if sign in row:
-            cells = split(row, sign)
-            mixed = sign == "\t" and any(len(cell.split()) > 1 for cell in cells)
+            pairs = [cell.split() for cell in split(row, sign)]
+            mixed = any(len(pair) > 1 and None not in map(number, pair) for pair in pairs)
             return None if mixed else sign
     return None
