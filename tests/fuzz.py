@@ -10,7 +10,8 @@ NASTY = (
     "{a: 1}", "[[0, 0, 1]]", "*a", "&a 1", "!!float 1", "<<", "../x", "'../x'", "/etc/passwd",
     "'\\0'", '"\\0"', '"\\x1b[31m"', "\u202e", "écoute", "\U0001f40d", "s", "t", "sin(s)",
     "exp(9999*s)", "1/(s-s)", "log(t)", "where(s < 2, 1, 0)", "9**9**9", "open", "ring", "straight",
-    "helix", "sine", "file", "curve", "natural", "natural_1", "{table: x.csv}", "euler", "rk4", "rkc", "yz", "algebraic9", "{spacings: 3}", "- 1",
+    "helix", "sine", "file", "euler", "rk4", "rkc", "yz", "algebraic9", "{spacings: 3}", "- 1",
+    "curve", "natural", "natural_1", "{table: x.csv}", "{kind: curve, path: x.csv}",
     ": :", "# x", "|", ">",
 )  # fmt: skip
 _TOKEN = re.compile(r"[\w.+\-]+|\S")

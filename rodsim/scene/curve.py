@@ -15,6 +15,7 @@ from rodsim.scene.stored import Built, find_file, in_unit
 
 SAMPLES = 64  # of expressions, for each point of the rod
 FEWEST_SAMPLES, MOST_SAMPLES = 4096, 2**18
+BLOCK = 2**18  # values of the spline at a time
 GAP = 10.0  # medians: a distance that looks like a place without points
 STILL = 1e-9  # of the largest speed along the parameter
 SHARPEST = -0.9  # cosine from one tangent to the next
@@ -96,7 +97,7 @@ def _gaps(distance, position, shape, points):
 def _from_formula(shape, built):
     """Return knots at many values of u, so close that the spline is the curve."""
     points = shape.points or 0
-    samples = max(FEWEST_SAMPLES, 2 * points, min(SAMPLES * points, MOST_SAMPLES))
+    samples = max(FEWEST_SAMPLES, min(SAMPLES * points, MOST_SAMPLES))
     given = np.linspace(*shape.range, samples + 1)
     parts = [
         part(given) if callable(part) else np.full(len(given), part) for part in shape.position
@@ -140,10 +141,14 @@ def _resample(spline, shape, built):
     """Fill in positions at equal arc steps, triads, and the spacing at rest."""
 
     def speed(u):
-        return np.linalg.norm(spline.slope(u), axis=-1)
+        flat, found = u.reshape(-1), np.empty(u.size)
+        for begin in range(0, u.size, BLOCK):
+            block = slice(begin, begin + BLOCK)
+            found[block] = np.linalg.norm(spline.slope(flat[block]), axis=-1)
+        return found.reshape(u.shape)
 
     own, speeds = arc_length(speed, spline.knots), speed(spline.knots)
-    if not speeds.min() > STILL * speeds.max():
+    if not (np.isfinite(own) and speeds.min() > STILL * speeds.max()):
         key = "path" if shape.position is None else "position"
         built.errors.append(
             (key, f"the curve turns back at {spline(spline.knots[speeds.argmin()])}")
@@ -191,6 +196,11 @@ def _hold(built, step):
         reason = f"the curve is {1.0 + off:.4g} times as long as the rod at rest"
         reason += "; as_is: true takes it so" if refused else ""
         (built.errors if refused else built.warnings).append(("length", reason))
+
+
+def _where(spline, speeds):
+    """Return where the curve is slowest, as x, y, z."""
+    return ", ".join(f"{x:.4g}" for x in spline(spline.knots[np.argmin(speeds)]))
 
 
 def _segments(shape, own, spline):

@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
+
 from rodsim.case import check_strain_twist, thin
 from rodsim.errors import CaseError, FileError
 from rodsim.scene.curve import build_curve
@@ -63,7 +65,8 @@ def _build(case, name, rod, stored):
     if shape.kind in READERS:
         folder = Path(case.source.path).parent if case.source and case.source.path else Path()
         try:
-            built = READERS[shape.kind](shape, folder, case.units.length)
+            with np.errstate(all="ignore"):  # what is too large is refused below
+                built = READERS[shape.kind](shape, folder, case.units.length)
         except FileError as error:
             where = case.source.problem(("rods", name, "shape", "path"), str(error))
             raise FileError(str(where)) from error

@@ -1,7 +1,11 @@
 """One reader for the tables people have: the same numbers out of every way of writing them."""
 
+import warnings
+from contextlib import suppress
+
 import numpy as np
 import pytest
+from fuzz import mutated
 
 from rodsim.errors import FileError
 from rodsim.scene.data.functions import close_period, read_samples
@@ -216,6 +220,26 @@ def test_a_period_is_closed_once(tmp_path):
     path.write_text("0,0,0.1,0.2\n0,1,2,1.5\n1,3,4,3\n")
     with pytest.raises(FileError, match=r"after one period of 0\.2 its values differ by 0.5 of 4"):
         close_period(read_samples(path), 0.2, path)
+
+
+READERS = (
+    lambda path: read_points(path, False),
+    lambda path: read_points(path, True),
+    read_samples,
+)
+
+
+@pytest.mark.parametrize("seed", range(150))
+def test_damaged_tables_are_read_or_refused(tmp_path, seed):
+    """Any other error than a FileError, and any warning, is a failure."""
+    text = mutated(list(WAYS.values())[seed % len(WAYS)], seed)
+    for name in ("t.csv", "t.xyz", "t.vertex"):
+        path = tmp_path / name
+        path.write_text(text, encoding="utf-8", errors="surrogatepass")
+        for read in READERS:
+            with suppress(FileError), warnings.catch_warnings():
+                warnings.simplefilter("error")
+                read(path)
 
 
 def test_large_files_take_memory_of_their_size(tmp_path):

@@ -48,6 +48,8 @@ class TextTable:
 
     def floats(self, columns: list[int]) -> np.ndarray:
         """Return some columns as finite numbers, (n, columns); raises FileError with the line."""
+        if not self.rows:
+            raise FileError(f"{self.path}: has no rows")
         rows = (_FORTRAN.sub("e", row) for row in self.rows)
         try:
             values = np.loadtxt(
