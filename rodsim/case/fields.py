@@ -105,6 +105,12 @@ def curve_expression(text: Any, info: ValidationInfo) -> Expression:
     return Expression(text, parameters, ("u",))
 
 
+def modulus_expression(text: Any, info: ValidationInfo) -> Expression:
+    """Return the expression in s, with the case's parameters."""
+    parameters = (info.context or {}).get("parameters", {})
+    return Expression(text, parameters, ("s",))
+
+
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
 ParameterName = Annotated[Name, AfterValidator(not_reserved)]
 UnitName = Annotated[str, Field(pattern=r"^[A-Za-zµμ]{1,12}$")]
@@ -165,7 +171,18 @@ Column = Annotated[
     | Annotated[str, Field(min_length=1), Tag("<text>")],
     Discriminator(tag_of),
 ]
-NumberOrPair = Annotated[
-    Annotated[Positive, Tag("<number>")] | Annotated[tuple[Positive, Positive], Tag("<list>")],
-    Discriminator(number_tag),
+ModulusText = Annotated[
+    Any,
+    PlainValidator(modulus_expression),
+    WithJsonSchema({"type": "string", "description": "expression in s and the parameters"}),
+]
+Modulus = Annotated[
+    Annotated[Positive, Tag("<number>")] | Annotated[ModulusText, Tag("<text>")],
+    Discriminator(tag_of),
+]
+ModulusOrPair = Annotated[
+    Annotated[Positive, Tag("<number>")]
+    | Annotated[ModulusText, Tag("<text>")]
+    | Annotated[tuple[Modulus, Modulus], Tag("<list>")],
+    Discriminator(tag_of),
 ]

@@ -13,9 +13,10 @@ from rodsim.case.expressions import Expression
 from rodsim.case.fields import (
     Count,
     Model,
+    Modulus,
+    ModulusOrPair,
     Name,
     Number,
-    NumberOrPair,
     ParameterName,
     Positive,
     UnitName,
@@ -63,20 +64,33 @@ class Fluid(Model):
 
 
 class Moduli(Model):
-    """Elastic moduli; bending and shear may differ along D1 and D2."""
+    """Elastic moduli: numbers, or expressions in s at the middle of a segment.
 
-    bending: NumberOrPair = quantity("bending", "a1 = a2, or [a1, a2]")
-    twisting: Positive = quantity("bending", "a3")
-    shear: NumberOrPair = quantity("force", "b1 = b2, or [b1, b2]")
-    stretch: Positive = quantity("force", "b3")
+    Bending and shear may differ along D1 and D2.
+    """
+
+    bending: ModulusOrPair = quantity("bending", "a1 = a2, or [a1, a2]")
+    twisting: Modulus = quantity("bending", "a3")
+    shear: ModulusOrPair = quantity("force", "b1 = b2, or [b1, b2]")
+    stretch: Modulus = quantity("force", "b3")
 
     @property
-    def values(self) -> tuple[float, float, float, float, float, float]:
+    def values(self) -> tuple[float | Expression, ...]:
         """The moduli as (a1, a2, a3, b1, b2, b3)."""
         return (*_pair(self.bending), self.twisting, *_pair(self.shear), self.stretch)
 
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The keys of the values."""
+        return ("bending", "bending", "twisting", "shear", "shear", "stretch")
 
-def _pair(value: float | tuple[float, float]) -> tuple[float, float]:
+    @property
+    def vary(self) -> bool:
+        """Whether any of them is an expression."""
+        return any(isinstance(value, Expression) for value in self.values)
+
+
+def _pair(value):
     return value if isinstance(value, tuple) else (value, value)
 
 

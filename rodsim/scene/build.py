@@ -5,6 +5,7 @@ import numpy as np
 from rodsim.case import spacings_differ
 from rodsim.compiled.constants import HALF_TURN
 from rodsim.errors import CaseError
+from rodsim.scene.moduli import laid_out, typical
 from rodsim.scene.rods import build_rods
 from rodsim.scene.state import Rods, Scene, State, StrainTwist
 from rodsim.scene.tracers import tube
@@ -23,7 +24,7 @@ def build_scene(case, stored=None) -> Scene:
     """
     found = build_rods(case, stored)
     built = found.rods
-    rods = _tables(case, built)
+    rods = _tables(case, found)
     position = np.ascontiguousarray(np.concatenate([rod[0] for rod in built], axis=1))
     director = np.ascontiguousarray(np.concatenate([rod[1] for rod in built], axis=2))
     epsilon, problems = _epsilon(case, rods)
@@ -31,6 +32,7 @@ def build_scene(case, stored=None) -> Scene:
         problems += _plane_problems(case, rods, position, director)
         position[0], director = position[0, 0], _flattened(director)
     problems += _half_turns(case, rods, director)
+    problems += _varying(case)
     if problems:
         raise CaseError(problems)
     tracer, groups = _tracers(case, rods, built)
@@ -45,11 +47,13 @@ def build_scene(case, stored=None) -> Scene:
         tracer_groups=groups,
         initial=State(0.0, position, director, tracer),
         arrays=found.arrays,
+        moduli=laid_out(found.moduli, rods.count),
         warnings=tuple(found.warnings),
     )
 
 
-def _tables(case, built):
+def _tables(case, found):
+    built = found.rods
     count = np.array([rod[0].shape[1] for rod in built], dtype=np.int64)
     return Rods(
         names=tuple(case.rods),
@@ -57,7 +61,7 @@ def _tables(case, built):
         count=count,
         closed=np.array([rod[3] for rod in built], dtype=np.bool_),
         spacing=np.array([rod[2] for rod in built], dtype=float),
-        moduli=np.array([rod.moduli.values for rod in case.rods.values()], dtype=float).T.copy(),
+        moduli=np.array([typical(along) for along in found.moduli]).T.copy(),
     )
 
 
@@ -111,6 +115,14 @@ def _half_turns(case, rods, director):
             reason = f"the triads of points {k} and {k + 1} are a half-turn apart: use more points"
             problems.append(case.source.problem(("rods", name, "shape"), reason))
     return problems
+
+
+def _varying(case):
+    """Refuse what the kernels do not compute: moduli that are not the same along a rod."""
+    for name, rod in case.rods.items():
+        if rod.moduli.vary:
+            reason = "moduli that depend on s are checked, but not computed yet: give numbers"
+            yield case.source.problem(("rods", name, "moduli"), reason)
 
 
 def _tracers(case, rods, built):

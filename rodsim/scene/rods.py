@@ -9,6 +9,7 @@ from rodsim.case import check_strain_twist, thin
 from rodsim.errors import CaseError, FileError
 from rodsim.scene.curve import build_curve
 from rodsim.scene.geometry import check_rounding
+from rodsim.scene.moduli import check_moduli, moduli_along
 from rodsim.scene.shapes import FORMULAS, place
 from rodsim.scene.stored import Built, read_shape
 from rodsim.scene.strain import bind, check_reach
@@ -20,12 +21,14 @@ READERS = {"file": read_shape, "curve": build_curve}
 class RodsBuilt:
     """Rods as built: (position, director, spacing, closed) of each, its strain twist, its arrays.
 
-    ``entries``: three numbers or functions of s and t for each rod. ``arrays``: by rod, what the
+    ``entries``: three numbers or functions of s and t for each rod. ``moduli``: (6, S) of each, at
+    the middle of its segments. ``arrays``: by rod, what the
     strain twist was made from, for the output. ``warnings``: Problems.
     """
 
     rods: list = field(default_factory=list)
     entries: list = field(default_factory=list)
+    moduli: list = field(default_factory=list)
     arrays: dict = field(default_factory=dict)
     warnings: list = field(default_factory=list)
 
@@ -93,6 +96,8 @@ def _bind(case, name, rod, built, stored, found):
         entries = (entries[0], 0.0, 0.0)
     segments = built.position.shape[1] - (not built.closed)
     end = case.time.end
+    along = moduli_along(rod.moduli, built.spacing, segments)
+    built.errors += dict.fromkeys(check_moduli(rod.moduli, along, built.spacing))
     built.errors += check_reach(rod, entries, built.spacing, segments, end)
     if not built.errors and (rod.needs_data or rod.shape.ds is None):
         errors, warnings = check_strain_twist(entries, built.spacing, segments, end)
@@ -102,5 +107,6 @@ def _bind(case, name, rod, built, stored, found):
         built.warnings.append((("", "fluid", "epsilon"), reason))
     found.rods.append((built.position, built.director, built.spacing, built.closed))
     found.entries.append(entries)
+    found.moduli.append(along)
     if arrays:
         found.arrays[name] = arrays

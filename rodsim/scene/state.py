@@ -68,8 +68,9 @@ class Rods:
 class Scene:
     """A case made ready to run: rods, fluid, intrinsic strain twist, initial state.
 
-    ``arrays``: by rod, what its strain twist was made from beside the case's text, by name.
-    ``warnings``: Problems that do not stop a run and that only the geometry could tell.
+    ``moduli`` (6, N): of each segment, rod after rod. ``arrays``: by rod, what its strain twist was
+    made from beside the case's text, by name. ``warnings``: Problems that do
+    not stop a run and that only the geometry could tell.
     """
 
     rods: Rods
@@ -81,6 +82,7 @@ class Scene:
     density: float | None
     tracer_groups: dict[str, int]
     initial: State
+    moduli: np.ndarray | None = None
     arrays: dict = field(default_factory=dict)
     warnings: tuple = ()
 

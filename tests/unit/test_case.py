@@ -255,7 +255,7 @@ def test_schema_knows_the_unions_and_describes_every_key():
     assert {"$ref": "#/definitions/Spacings"} in epsilon
     assert {"exclusiveMinimum": 0, "type": "number"} in epsilon
     bending = definitions["Moduli"]["properties"]["bending"]["oneOf"]
-    assert [member["type"] for member in bending] == ["number", "array"]
+    assert [member["type"] for member in bending] == ["number", "string", "array"]
     natural, triple = definitions["Rod"]["properties"]["strain_twist"]["oneOf"]
     assert natural["const"] == "natural"
     entry = triple["items"][0]["oneOf"]
