@@ -4,12 +4,12 @@ from rodsim.errors import UsageError
 
 BOLTZMANN = 1.380649e-23  # J/K, exact
 SI = {
-    "m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9,
+    "m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9, "Angstrom": 1e-10,
     "kg": 1.0, "g": 1e-3, "mg": 1e-6, "ug": 1e-9, "µg": 1e-9, "ng": 1e-12, "pg": 1e-15,
     "s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0,
 }  # fmt: skip
 
-LENGTHS = ("m", "cm", "mm", "um", "µm", "nm")
+LENGTHS = ("m", "cm", "mm", "um", "µm", "nm", "Angstrom")
 
 
 def length_factor(unit: str, other: str) -> float | None:

@@ -15,6 +15,7 @@ from rodsim.case.fields import (
     Number,
     OpenPoints,
     Positive,
+    UnitName,
     quantity,
 )
 from rodsim.case.placed import FromFile
@@ -41,6 +42,7 @@ class CurveBase(FromFile):
     )
     frame: Integer | None = Field(None, description="of a table: frame of several; -1 is the last")
     rod: str | None = Field(None, description="of a table: which rod of several")
+    unit: UnitName | None = Field(None, description="of a table's lengths, if not the case's")
     closed: Flag = Field(False, description="join the end to the beginning")
     smoothing: NotNegative = quantity(
         "length", "root mean square distance the curve may keep from its points", default=0.0
@@ -73,7 +75,7 @@ class CurveBase(FromFile):
             raise ValueError("from and to must differ")
         if self.points is None and self.spacing is None:
             raise ValueError("position needs points, or spacing")
-        return self._only_for("path", "columns", "frame", "rod")
+        return self._only_for("path", "columns", "frame", "rod", "unit")
 
     def _only_for(self, key, *others):
         given = [name for name in others if getattr(self, name) is not None]

@@ -18,6 +18,7 @@ from rodsim.case.fields import (
     Number,
     OpenPoints,
     Positive,
+    UnitName,
     quantity,
 )
 from rodsim.case.placed import FromFile, Placed
@@ -103,6 +104,7 @@ class FileShape(FromFile):
         max_length=12,
         description="of a table: names, or numbers from 1 on, of x y z D1 D2 D3",
     )
+    unit: UnitName | None = Field(None, description="of a table's lengths, if not the case's")
     spacing: Positive | None = quantity("length", "rest spacing of a table's points", default=None)
     closed: Flag | None = Field(None, description="join the last point of a table to the first")
     as_is: Flag = Field(

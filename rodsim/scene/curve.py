@@ -51,7 +51,7 @@ def _from_table(shape, folder, unit, built):
     points = read_points(
         find_file(shape.path, folder), False, shape.columns, shape.frame, shape.rod
     )
-    factor, errors, warnings = in_unit(points.unit, unit, shape.as_is)
+    factor, errors, warnings = in_unit(shape.unit or points.unit, unit, shape.as_is)
     built.errors += errors
     built.warnings += warnings
     position = factor * points.position

@@ -1,6 +1,6 @@
 """The rods of a case, one by one: built or read, placed, and held against what the case says."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -47,8 +47,9 @@ def build_rods(case, stored=None) -> RodsBuilt:
             _bind(case, name, rod, built, stored, found)
         problems += _placed(case, name, built.errors)
         found.warnings += _placed(case, name, built.warnings)
-    if problems:
-        raise CaseError(problems)
+    if problems:  # what looked wrong may be why: a unit, say
+        hints = [replace(hint, reason=f"warning: {hint.reason}") for hint in found.warnings]
+        raise CaseError([*problems, *hints])
     return found
 
 

@@ -92,6 +92,8 @@ def _from_output(shape, path, unit):
     spacing = rod.spacing if factor == 1.0 else factor * rod.spacing
     built = Built(position, director.transpose(1, 2, 0).copy(), spacing, rod.closed)
     errors += _beside(shape, spacing, rod.closed)
+    if shape.unit not in (None, run.units["length"]):
+        errors.append(("unit", f"the output is in {run.units['length']}: leave it out"))
     built.errors, built.warnings = errors, warnings
     return built
 
@@ -107,7 +109,7 @@ def _beside(shape, spacing, closed):
 def _from_table(shape, path, unit):
     points = read_points(path, True, shape.columns, shape.frame, shape.rod)
     director, note = orthonormal(points)
-    factor, errors, warnings = in_unit(points.unit, unit, shape.as_is)
+    factor, errors, warnings = in_unit(shape.unit or points.unit, unit, shape.as_is)
     warnings += [("path", note)] * (note is not None)
     position = factor * points.position.T if factor != 1.0 else points.position.T.copy()
     spacing, closed = shape.spacing, bool(shape.closed)

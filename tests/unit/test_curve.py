@@ -208,6 +208,14 @@ def test_a_closed_table_with_or_without_its_first_point_again(build, tmp_path):
     assert parts(a)[1][:, 0] == pytest.approx(np.repeat([[0, 0, 1]], 60, axis=0), abs=1e-12)
 
 
+def test_a_table_in_another_unit(build, tmp_path):
+    np.savetxt(tmp_path / "h.csv", 1e4 * helix(2, 30))  # the case is in um
+    scene = build("path: h.csv, unit: Angstrom")
+    np.savetxt(tmp_path / "h.csv", helix(2, 30))
+    assert np.allclose(scene.initial.position, build("path: h.csv").initial.position, rtol=1e-12)
+    assert "multiplied by 0.0001 to um" in str(scene.warnings[0])
+
+
 def test_points_by_the_table_by_number_or_by_spacing(build, tmp_path):
     np.savetxt(tmp_path / "h.csv", helix(2, 30))
     length = 2 * 2 * np.pi * np.hypot(0.6, 0.9 / (2 * np.pi))
