@@ -25,6 +25,16 @@ SI = {  # of each kind: the names that are known, and their size in m, kg, s, N
 }
 
 
+def length_factor(unit: str, other: str) -> float | None:
+    """Return how many ``other`` a length of 1 ``unit`` is, or None where one is not known."""
+    lengths = SI["length"]
+    if unit == other:
+        return 1.0
+    if unit not in lengths or other not in lengths:
+        return None
+    return float(f"{lengths[unit] / lengths[other]:.12g}")
+
+
 def mass_name(units: dict) -> str:
     """Return the name of the unit of mass; where force is named instead, force length^-1 time^2."""
     if units.get("force"):

@@ -2,24 +2,9 @@
 
 import numpy as np
 
+from rodsim.forces.strain import strain_twist
 
-def strain_twist(director: np.ndarray, spacing: float, closed: bool = False) -> np.ndarray:
-    """Return the strain twist of each segment, 2 sin(theta/2) e^i / ds, (..., S, 3), 1/length.
-
-    The numbers (D^j' . D^l) of (24)-(26) that the energy (6) compares with Omega: the first two
-    are the curvatures about D^1 and D^2, the third the twist. theta is the angle and e the axis
-    of the rotation from one triad to the next, e^i its components along the triad.
-    ``director`` is (..., M, 3, 3) with [k, i, :] = D^(i+1); S = M - 1, or M for a closed rod.
-    Not finite at a half-turn, and where ``director`` holds no triads.
-    """
-    after = np.roll(director, -1, axis=-3)
-    pairs = director.shape[-3] if closed else director.shape[-3] - 1
-    here, after = director[..., :pairs, :, :], after[..., :pairs, :, :]
-    axial = 0.5 * np.cross(here, after).sum(axis=-2)
-    along = np.einsum("...c,...ic->...i", axial, here)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        cosine = 0.5 * np.sqrt(1.0 + np.einsum("...ic,...ic->...", here, after))
-        return along / (cosine[..., None] * spacing)
+__all__ = ["bend", "is_flat", "strain_twist"]
 
 
 def is_flat(strain: np.ndarray) -> bool:

@@ -1,6 +1,6 @@
 """Case files: YAML with line numbers -> a validated, immutable Case."""
 
-from rodsim.case.check import check_strain_twist, spacings_differ
+from rodsim.case.check import check_strain_twist, spacings_differ, thin
 from rodsim.case.expressions import Expression, ExpressionError
 from rodsim.case.load import case_from_mapping, load_case
 from rodsim.case.model import Case
@@ -18,4 +18,5 @@ __all__ = [
     "load_case",
     "spacings_differ",
     "template",
+    "thin",
 ]

@@ -7,7 +7,7 @@ problems of a file are reported at once; sections that did not are None.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 import numpy as np
 
@@ -44,19 +44,22 @@ def check(case: Case, rod_names: Iterable[str]) -> tuple[list[Finding], list[Fin
         if case.output is not None:
             errors += _frames(case)
     for name, rod in (case.rods or {}).items():
-        if rod.shape.ds is None or (case.parameters is None and _has_expression(rod)):
+        known = rod.shape.ds is not None and not rod.needs_data
+        if not known or (case.parameters is None and _has_expression(rod)):
             continue
         end = case.time.end if case.time else 0.0
-        found = check_strain_twist(rod, rod.shape.ds, rod.shape.segments, end)
+        found = check_strain_twist(rod.entries, rod.shape.ds, rod.shape.segments, end)
         errors += [(("rods", name, *path), reason) for path, reason in found[0]]
         warnings += [(("rods", name, *path), reason) for path, reason in found[1]]
     return errors, warnings
 
 
 def check_strain_twist(
-    rod: Rod, ds: float, segments: int, end: float
+    entries: tuple, ds: float, segments: int, end: float
 ) -> tuple[list[Finding], list[Finding]]:
     """Return (errors, warnings) of a rod's strain twist; paths start below the rod.
+
+    ``entries``: three numbers or functions of s and t, with ``uses_t``.
 
     Taken at the segments' midpoints s = (k + 1/2) ds, at t = 0 and t = end, and of a drive at some
     of them at times between: every entry must be finite there, and abs(Omega) ds <= 2. A discrete
@@ -64,8 +67,9 @@ def check_strain_twist(
     more.
     """
     warnings: list[Finding] = []
-    for s, times in _samples(rod, ds, segments, end):
-        omega = [_entry(entry, s, times) for entry in rod.strain_twist]
+    driven = any(callable(entry) and entry.uses_t for entry in entries)
+    for s, times in _samples(driven, ds, segments, end):
+        omega = [_entry(entry, s, times) for entry in entries]
         for i, values in enumerate(omega):
             if not np.all(np.isfinite(values)):
                 at = _where(s, times, np.argmin(np.isfinite(values)))
@@ -83,14 +87,14 @@ def check_strain_twist(
     return [], warnings
 
 
-def _samples(rod: Rod, ds: float, segments: int, end: float) -> Iterator[tuple]:
+def _samples(driven: bool, ds: float, segments: int, end: float) -> Iterator[tuple]:
     """Yield (s, times) at which the strain twist is looked at."""
     every, some = (
         (np.floor(np.linspace(0, segments - 1, min(segments, most))) + 0.5) * ds
         for most in (MOST_SAMPLES, SOME)
     )
     yield every, np.zeros(1)
-    if rod.driven:
+    if driven:
         yield every, np.array([end])
         yield some, end * ALONG_THE_RUN
 
@@ -100,15 +104,15 @@ def _where(s, times, index):
     return f"s = {s[k]:.4g}, t = {times[t]:.4g}"
 
 
-def _entry(entry: float | Expression, s: np.ndarray, times: np.ndarray) -> np.ndarray:
+def _entry(entry: float | Callable, s: np.ndarray, times: np.ndarray) -> np.ndarray:
     """Return the values (T, S) of an entry."""
-    if isinstance(entry, Expression):
+    if callable(entry):
         return entry(s, times[:, None])
     return np.full((len(times), len(s)), entry)
 
 
 def _has_expression(rod: Rod) -> bool:
-    return any(isinstance(entry, Expression) for entry in rod.strain_twist)
+    return any(isinstance(entry, Expression) for entry in rod.entries)
 
 
 def _step_missing(time: Time) -> Iterator[Finding]:
@@ -164,7 +168,7 @@ def _rods(case: Case) -> Iterator[Finding]:
             yield ("fluid", "epsilon"), reason
     if case.plane is not None:
         for name, rod in rods.items():
-            for i in (1, 2):
+            for i in (1, 2) if rod.strain_twist != "natural" else ():
                 if rod.strain_twist[i] != 0.0:
                     reason = f"Omega_{i + 1} must be the number 0 where plane is {case.plane}"
                     yield ("rods", name, "strain_twist", i), reason
@@ -178,12 +182,19 @@ def _thin(case: Case) -> Iterator[Finding]:
     for name, rod in (case.rods or {}).items():
         if (ds := rod.shape.ds) is None:
             continue
-        share = epsilon.spacings if isinstance(epsilon, Spacings) else epsilon / ds
-        if share < THIN:
-            reason = f"is {share:.3g} spacings of rod '{name}': fluid flows between its points"
-            advice = _finer("use more points, 2 spacings in an epsilon", 2.0 / share, "epsilon")
-            yield ("fluid", "epsilon"), f"{reason}; {advice}"
+        if reason := thin(epsilon, name, ds):
+            yield ("fluid", "epsilon"), reason
             return
+
+
+def thin(epsilon: float | Spacings, name: str, ds: float) -> str | None:
+    """Return that fluid flows between the points of a rod, or None where it does not."""
+    share = epsilon.spacings if isinstance(epsilon, Spacings) else epsilon / ds
+    if share >= THIN:
+        return None
+    reason = f"is {share:.3g} spacings of rod '{name}': fluid flows between its points"
+    advice = _finer("use more points, 2 spacings in an epsilon", 2.0 / share, "epsilon")
+    return f"{reason}; {advice}"
 
 
 def _finer(advice: str, times: float, what: str) -> str:

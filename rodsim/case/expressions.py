@@ -22,6 +22,7 @@ from rodsim.case.words import clipped, did_you_mean, one_of
 __all__ = ["FUNCTIONS", "RESERVED", "Expression", "ExpressionError", "evaluate", "names_in"]
 
 CONSTANTS = {"pi": np.pi}
+NATURAL = ("natural_1", "natural_2", "natural_3")  # the rod's own strain twist, as it is built
 RESERVED = (
     "s", "t", "pi", "sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "abs", "min", "max", "where",
 )  # fmt: skip  # later functions are told from parameters by their bracket
@@ -60,10 +61,13 @@ class Expression:
         self.uses = frozenset(name for _, name in self._program.names)
 
     def __call__(self, *values: np.ndarray | float) -> np.ndarray:
-        """Return the values at arrays of the variables, in the order of ``variables``."""
+        """Return the values at arrays of the variables, in the order of ``variables``.
+
+        The last ones may be left out where they are not used.
+        """
         arrays = [np.asarray(value, dtype=np.float64) for value in values]
         result = np.empty(np.broadcast_shapes(*(array.shape for array in arrays)))
-        result[...] = self._program(dict(zip(self.variables, arrays, strict=True)))
+        result[...] = self._program(dict(zip(self.variables, arrays, strict=False)))
         return result
 
     def derivative(self, variable: str) -> Expression:
@@ -99,6 +103,11 @@ class Expression:
         """Whether it depends on time."""
         return "t" in self.uses
 
+    @property
+    def uses_natural(self) -> bool:
+        """Whether it depends on the rod's own strain twist."""
+        return not self.uses.isdisjoint(NATURAL)
+
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Expression) and self._identity() == other._identity()
 
@@ -133,7 +142,7 @@ def names_in(text: str) -> frozenset[str]:
 
 def reserved_name(name: str) -> str | None:
     """Return why a parameter cannot have this name, or None when it can."""
-    if name in RESERVED:
+    if name in RESERVED or name in NATURAL:
         return f"'{name}' already has a meaning in expressions: choose another name"
     if keyword.iskeyword(name):
         return f"'{name}' is a word of the expression language: choose another name"
@@ -155,6 +164,6 @@ def _check_names(nodes, parameters, variables) -> None:
             continue
         if name in FUNCTIONS:
             raise ExpressionError(f"'{name}' is a function: write {name}(...)")
-        known = [*variables, *CONSTANTS, *parameters]
+        known = [*(v for v in variables if v not in NATURAL), *CONSTANTS, *parameters]
         hint = did_you_mean(name, (*known, *FUNCTIONS)) or f": it can use {one_of(known)}"
         raise ExpressionError(f"unknown name '{clipped(name)}'{hint}")

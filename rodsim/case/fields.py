@@ -87,6 +87,16 @@ def in_range(number: float) -> float:
     return number
 
 
+def positive(value: Any) -> Any:
+    """Return a modulus; raise ValueError if it is a number that is not > 0. Others are checked
+    where they are computed."""
+    if isinstance(value, Expression):
+        return value
+    if not value > 0.0:
+        raise ValueError("must be > 0")
+    return in_range(value)
+
+
 def not_null(vector: tuple[float, float, float]) -> tuple[float, float, float]:
     """Return the vector; raise ValueError if it has no direction."""
     if not any(vector):
@@ -152,6 +162,16 @@ def tag_of(value: Any) -> str:
     return "<text>" if isinstance(value, str) else "<number>"
 
 
+def pair_tag(value: Any) -> str:
+    """Like ``tag_of``, for unions of one entry, number or text, and a list of them."""
+    return "<list>" if isinstance(value, list | tuple) else "<number>"
+
+
+def text_tag(value: Any) -> str:
+    """Like ``tag_of``, for unions of a text and a list."""
+    return "<text>" if isinstance(value, str) else "<list>"
+
+
 def number_tag(value: Any) -> str:
     """Like ``tag_of``, for unions that have no member for text."""
     tag = tag_of(value)
@@ -168,7 +188,13 @@ def number_or(expression: Any) -> Any:
 
 ExpressionText = expression_in("s", "t")
 NumberOrExpression = number_or(ExpressionText)
-NumberOrPair = Annotated[
-    Annotated[Positive, Tag("<number>")] | Annotated[tuple[Positive, Positive], Tag("<list>")],
-    Discriminator(number_tag),
+Column = Annotated[
+    Annotated[int, Field(strict=True, ge=1), Tag("<number>")]
+    | Annotated[str, Field(min_length=1), Tag("<text>")],
+    Discriminator(tag_of),
+]
+Modulus = Annotated[number_or(expression_in("s")), AfterValidator(positive)]
+ModulusOrPair = Annotated[
+    Annotated[Modulus, Tag("<number>")] | Annotated[tuple[Modulus, Modulus], Tag("<list>")],
+    Discriminator(pair_tag),
 ]

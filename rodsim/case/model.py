@@ -21,22 +21,24 @@ from rodsim.case.expressions import Expression
 from rodsim.case.fields import (
     Count,
     Model,
+    Modulus,
+    ModulusOrPair,
     Name,
     Number,
-    NumberOrExpression,
-    NumberOrPair,
     ParameterName,
     Positive,
     Vector,
     not_empty,
     number_tag,
     quantity,
+    text_tag,
 )
 from rodsim.case.materials import WIDTHS, Material, Radius
 from rodsim.case.methods import METHODS, Method
 from rodsim.case.resolved import is_driven, resolved
 from rodsim.case.shapes import Perturb, Shape
 from rodsim.case.source import Source, child
+from rodsim.case.strain import OWN, StrainEntry, StrainTable
 from rodsim.case.unit_names import Units
 from rodsim.errors import Problem
 from rodsim.registry import with_words
@@ -79,20 +81,33 @@ class Fluid(Model):
 
 
 class Moduli(Material):
-    """Elastic moduli; bending and shear may differ along D1 and D2."""
+    """Elastic moduli: numbers, or expressions in s at the middle of a segment.
 
-    bending: NumberOrPair = quantity("bending", "a1 = a2, or [a1, a2]")
-    twisting: Positive = quantity("bending", "a3")
-    shear: NumberOrPair = quantity("force", "b1 = b2, or [b1, b2]")
-    stretch: Positive = quantity("force", "b3")
+    Bending and shear may differ along D1 and D2.
+    """
+
+    bending: ModulusOrPair = quantity("bending", "a1 = a2, or [a1, a2]")
+    twisting: Modulus = quantity("bending", "a3")
+    shear: ModulusOrPair = quantity("force", "b1 = b2, or [b1, b2]")
+    stretch: Modulus = quantity("force", "b3")
 
     @property
-    def values(self) -> tuple[float, float, float, float, float, float]:
+    def values(self) -> tuple[float | Expression, ...]:
         """The moduli as (a1, a2, a3, b1, b2, b3)."""
         return (*_pair(self.bending), self.twisting, *_pair(self.shear), self.stretch)
 
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The keys of the values."""
+        return ("bending", "bending", "twisting", "shear", "shear", "stretch")
 
-def _pair(value: float | tuple[float, float]) -> tuple[float, float]:
+    @property
+    def vary(self) -> bool:
+        """Whether any of them is an expression."""
+        return any(isinstance(value, Expression) for value in self.values)
+
+
+def _pair(value):
     return value if isinstance(value, tuple) else (value, value)
 
 
@@ -113,9 +128,14 @@ class Rod(Model):
     )
     shape: Shape = Field(description="how it starts")
     moduli: Moduli = Field(description="elastic moduli")
-    strain_twist: tuple[NumberOrExpression, NumberOrExpression, NumberOrExpression] = quantity(
+    strain_twist: Annotated[
+        Annotated[Literal["natural"], Tag("<text>")]
+        | Annotated[tuple[StrainEntry, StrainEntry, StrainEntry], Tag("<list>")],
+        Discriminator(text_tag),
+    ] = quantity(
         "curvature",
-        "Omega_1, Omega_2, Omega_3: numbers, or expressions in s, t and the parameters",
+        "natural: of the shape as built; or Omega_1, Omega_2, Omega_3: numbers, expressions in s, "
+        "t, natural_1..3 and the parameters, or tables",
         default=(0.0, 0.0, 0.0),
     )
     perturb: Perturb | None = Field(
@@ -123,9 +143,34 @@ class Rod(Model):
     )
 
     @property
+    def entries(self) -> tuple[float | Expression | StrainTable, ...]:
+        """Omega_1, Omega_2, Omega_3."""
+        return OWN if self.strain_twist == "natural" else self.strain_twist
+
+    @property
     def driven(self) -> bool:
-        """Whether its strain twist depends on time."""
-        return any(isinstance(entry, Expression) and entry.uses_t for entry in self.strain_twist)
+        """Whether its strain twist depends on time, or may: a table is not read yet."""
+        return any(
+            isinstance(entry, StrainTable) or (isinstance(entry, Expression) and entry.uses_t)
+            for entry in self.entries
+        )
+
+    @property
+    def uses_natural(self) -> bool:
+        """Whether its strain twist depends on that of its shape."""
+        return any(isinstance(entry, Expression) and entry.uses_natural for entry in self.entries)
+
+    @property
+    def files(self) -> list[str]:
+        """The files of its shape and its tables, as the case names them."""
+        shape = getattr(self.shape, "path", None)
+        tables = [entry.table for entry in self.entries if isinstance(entry, StrainTable)]
+        return [path for path in (shape, *tables) if path is not None]
+
+    @property
+    def needs_data(self) -> bool:
+        """Whether its strain twist is known only once the rod is built or a table read."""
+        return self.uses_natural or any(isinstance(entry, StrainTable) for entry in self.entries)
 
 
 class Tube(Model):
@@ -240,9 +285,9 @@ class Case(Model):
         """The files it is read from: the case file and those of shapes."""
         if not (self.source and self.source.path):
             return []
-        shapes = [rod.shape.path for rod in self.rods.values() if rod.shape.kind == "file"]
         folder = os.path.dirname(self.source.path)
-        return [self.source.path, *(os.path.join(folder, path) for path in shapes)]
+        found = [path for rod in self.rods.values() for path in rod.files]
+        return [self.source.path, *(os.path.join(folder, path) for path in found)]
 
     @property
     def max_step_size(self) -> float:

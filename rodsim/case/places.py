@@ -118,4 +118,4 @@ def _noun(member: Any, plural: bool = False) -> str:
         parts = get_args(member)
         size = "" if parts[-1] is Ellipsis else f"{len(parts)} "
         return f"{many} of {size}{one_of([_noun(m, True) for m in _members(parts[0])])}"
-    return f"a mapping with {', '.join(member.model_fields)}"
+    return f"{'mappings' if plural else 'a mapping'} with {', '.join(member.model_fields)}"

@@ -7,10 +7,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
+from rodsim.case.curve import CurveShape
 from rodsim.case.fields import (
     ClosedPoints,
+    Column,
     Count,
-    Direction,
     Flag,
     Integer,
     Model,
@@ -20,38 +21,10 @@ from rodsim.case.fields import (
     OpenPoints,
     Positive,
     Seed,
-    Vector,
+    UnitName,
     quantity,
 )
-
-
-class Rotate(Model):
-    """A turn about an axis through the origin, before the shape is moved to its place."""
-
-    axis: Direction = Field(description="direction of the axis, of any length but 0")
-    degrees: Number = quantity("degrees", "angle, right-handed about the axis")
-
-
-class Placed(Model):
-    """What all shapes share."""
-
-    rotate: Rotate | None = Field(None, description="turn about the origin, done first")
-    origin: Vector = quantity("length", "then the shape is moved by this", default=(0.0, 0.0, 0.0))
-
-    @property
-    def is_closed(self) -> bool:
-        """Whether the last point is joined to the first."""
-        return False
-
-    @property
-    def ds(self) -> float | None:
-        """Arc length between neighbouring points, or None where only a file knows it."""
-        return self.length / (self.points - 1)
-
-    @property
-    def segments(self) -> int | None:
-        """Number of segments, or None where only a file knows it."""
-        return self.points if self.is_closed else self.points - 1
+from rodsim.case.placed import FromFile, Placed
 
 
 class Straight(Placed):
@@ -121,36 +94,30 @@ class Sine(Placed):
     length: Positive = quantity("length", "arc length")
 
 
-class FileShape(Placed):
-    """Points and triads from an earlier output, or from a text table x y z D1 D2 D3."""
+class FileShape(FromFile):
+    """Points and triads from an earlier output, or from a table x y z D1 D2 D3 (docs/data.md)."""
 
     kind: Literal["file"]
-    path: str = Field(min_length=1, description="output file or text table")
-    frame: Integer | None = Field(None, description="frame of the output; -1 is the last")
-    rod: str | None = Field(None, description="which rod of the output")
-    spacing: Positive | None = quantity("length", "rest spacing of a text table", default=None)
-    closed: Flag = Field(False, description="join the last point of a text table to the first")
-
-    @model_validator(mode="after")
-    def _table_or_output(self):
-        if self.spacing is not None and (self.frame is not None or self.rod is not None):
-            raise ValueError("spacing is for a text table, frame and rod are for an output file")
-        return self
+    path: str = Field(min_length=1, description="output file, table, or export")
+    frame: Integer | None = Field(None, description="frame of several; -1 is the last")
+    rod: str | None = Field(None, description="which rod of several")
+    columns: tuple[Column, ...] | None = Field(
+        None,
+        min_length=12,
+        max_length=12,
+        description="of a table: names, or numbers from 1 on, of x y z D1 D2 D3",
+    )
+    unit: UnitName | None = Field(None, description="of a table's lengths, if not the case's")
+    spacing: Positive | None = quantity("length", "rest spacing of a table's points", default=None)
+    closed: Flag | None = Field(None, description="join the last point of a table to the first")
+    as_is: Flag = Field(
+        False, description="take it also where its points, triads and spacing contradict each other"
+    )
 
     @property
     def is_closed(self) -> bool:
-        """Whether a text table is closed; an output file says it itself."""
-        return self.closed
-
-    @property
-    def ds(self) -> None:
-        """Not known before the file is read."""
-        return None
-
-    @property
-    def segments(self) -> None:
-        """Not known before the file is read."""
-        return None
+        """Whether a table is closed; an output file says it itself."""
+        return bool(self.closed)
 
 
 class Perturb(Model):
@@ -171,6 +138,7 @@ Shape = Annotated[
     | Annotated[Ring, Tag("<ring>")]
     | Annotated[Helix, Tag("<helix>")]
     | Annotated[Sine, Tag("<sine>")]
-    | Annotated[FileShape, Tag("<file>")],
+    | Annotated[FileShape, Tag("<file>")]
+    | Annotated[CurveShape, Tag("<curve>")],
     Discriminator(_kind_tag),
 ]

@@ -57,9 +57,9 @@ def warn(text) -> None:
     say(f"warning: {text}")
 
 
-def say_warnings(case) -> None:
-    """Say what looks wrong in a case."""
-    for problem in case.warnings:
+def say_warnings(case, scene=None) -> None:
+    """Say what looks wrong in a case, and in its scene."""
+    for problem in (*case.warnings, *(scene.warnings if scene else ())):
         warn(problem)
 
 

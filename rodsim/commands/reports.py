@@ -26,19 +26,23 @@ def describe_case(case, refuse=False) -> str:
 
     ``refuse`` : raise CaseError for what a run would refuse, a fixed step above its limit.
     """
+    from rodsim.commands.geometry import describe_start
     from rodsim.integrators.limits import check_step, stability
     from rodsim.scene.system import RodSystem
 
     scene = build_scene(case)
+    system = RodSystem(scene)
     unit = case.units
     lines = [case.title] if case.title else []
     lines += [*describe_parameters(case), *describe_rods(case, scene)]
+    lines += [f"warning: {problem}" for problem in scene.warnings]
     lines.append(
         f"fluid: viscosity {scene.viscosity:.6g} {unit_text(VISCOSITY, unit.names)}"
         f"{in_water_units(scene.viscosity, unit.names)}, {scene.blob}, "
         f"epsilon {scene.epsilon:.6g} {unit.length} "
         f"= {scene.epsilon / scene.rods.spacing[0]:.4g} spacings"
     )
+    lines += describe_start(scene, system, unit.names)
     if scene.planar:
         lines.append("planar: only u_y, u_z and w_x are computed")
     for name, count in scene.tracer_groups.items():
@@ -49,7 +53,7 @@ def describe_case(case, refuse=False) -> str:
     how = f"{option} {getattr(time, option):g}"
     frames = len(frame_times(time.end, case.interval))
     lines.append(f"time: to {time.end:g} {unit.time} by {time.integrator}, {how}; {frames} frames")
-    limits = stability(RodSystem(scene))
+    limits = stability(system)
     if refuse:
         lines += [f"warning: {problem}" for problem in check_step(case, limits)]
     return "\n".join([*lines, *describe_limits(limits, unit.time)])

@@ -12,7 +12,7 @@ ENERGIES = ("bending_energy", "twisting_energy", "shear_energy", "stretch_energy
 def strain_twist(entries, rods) -> Row:
     """Return the intrinsic strain twist (Omega_1, Omega_2, Omega_3) of all rods as a row (3 N).
 
-    ``entries``: for each rod three numbers or expressions in s, t. Segment k of a rod lies at
+    ``entries``: for each rod three numbers or functions of s, t. Segment k of a rod lies at
     s = (k + 1/2) ds; the segment that an open rod does not have stays 0.
     """
     return Row(
@@ -25,25 +25,24 @@ def strain_twist(entries, rods) -> Row:
     )
 
 
-def elastic_part(row: Row) -> Part:
-    """Return the part of rods with an intrinsic strain twist."""
-    kernel = "rodsim.forces.elasticity:elastic_loads"
-    return Part("elastic", FORCE, kernel, row, drive="the strain twist", observe=_observe)
-
-
-def _build(case, scene):
-    entries = [case.rods[rod.name].strain_twist for rod in scene.rods]
-    return [elastic_part(strain_twist(entries, scene.rods))]
+def elastic_part(scene) -> Part:
+    """Return the part of the rods of a scene."""
+    along = scene.along
+    kernel, fixed = ("elastic", np.zeros(0)) if along is None else ("varying", along.ravel())
+    home = f"rodsim.forces.elasticity:{kernel}_loads"
+    row = strain_twist(scene.entries, scene.rods)
+    return Part("elastic", FORCE, home, row, fixed, drive="the strain twist", observe=_observe)
 
 
 def _observe(state, row, scene):
     """Return the energies (6) and the present length of each rod."""
-    from rodsim.forces.elasticity import energies
+    from rodsim.forces.elasticity import UNIFORM, energies
 
     rods, omega = scene.rods, row(state.time).reshape(3, -1)
+    along = UNIFORM if scene.along is None else scene.along
     split, length = np.empty((4, len(rods))), np.empty(len(rods))
-    energies(state.position, state.director, omega, rods.tables, split, length)
+    energies(state.position, state.director, omega, rods.tables, along, split, length)
     return {**dict(zip(ENERGIES, split, strict=True)), "length": length}
 
 
-KIND = Kind(build=_build)
+KIND = Kind(build=lambda case, scene: [elastic_part(scene)])

@@ -62,7 +62,7 @@ def _half_director(D, k, j, i, c, vx, vy, vz):
 
 
 @inline
-def _segment_loads(X, D, omega, a, b, ds, k, j, internal):
+def _segment_loads(X, D, omega, a, b, rest, ds, k, j, internal):
     """Write F and N of the segment from point k to point j, (23)-(27), into ``internal``."""
     trace = _one_plus_trace(D, k, j)
     c = 0.5 * math.sqrt(trace if trace > HALF_TURN else math.nan)
@@ -72,7 +72,7 @@ def _segment_loads(X, D, omega, a, b, ds, k, j, internal):
     for i in range(3):
         along, hx, hy, hz = _half_director(D, k, j, i, c, vx, vy, vz)
         moment = a[i] * (along / (c * ds) - omega[i, k])
-        force = b[i] * (hx * dx + hy * dy + hz * dz - (i == 2))
+        force = b[i] * (hx * dx + hy * dy + hz * dz - (i == 2) - rest[i])
         fx += force * hx
         fy += force * hy
         fz += force * hz
@@ -97,8 +97,54 @@ def _balance(X, internal, loads, k, before, after):
         )
 
 
-@kernel(f"void({MAT}, {TRIADS}, {MAT}, {RODS}, {MAT})")
-def point_loads(X, D, omega, rods, loads):
+@inline
+def _moduli(along, k):
+    """Return a, b and the rest strains of segment k, where they vary."""
+    return (
+        (along[0, k], along[1, k], along[2, k]),
+        (along[3, k], along[4, k], along[5, k]),
+        (along[6, k], along[7, k], along[8, k]),
+    )
+
+
+def _loads(varying):
+    """Make the loads of rods: with moduli of their own for each segment, or one set for a rod."""
+
+    @unsigned
+    def point_loads(X, D, omega, rods, along, loads):
+        internal = np.empty((6, X.shape[1]))  # F in rows 0-2 and N in rows 3-5 of each segment
+        firsts, counts, closed, spacing, moduli = rods
+        for r in range(firsts.size):
+            first, ds = np.uint64(firsts[r]), spacing[r]
+            a = moduli[0, r], moduli[1, r], moduli[2, r]
+            b = moduli[3, r], moduli[4, r], moduli[5, r]
+            rest = 0.0, 0.0, 0.0
+            last = first + np.uint64(counts[r]) - ONE
+            for k in range(first, last):
+                if varying:
+                    a, b, rest = _moduli(along, k)
+                _segment_loads(X, D, omega, a, b, rest, ds, k, k + ONE, internal)
+            if closed[r]:
+                if varying:
+                    a, b, rest = _moduli(along, last)
+                _segment_loads(X, D, omega, a, b, rest, ds, last, first, internal)
+            else:
+                for c in range(6):
+                    internal[c, last] = 0.0
+            _balance(X, internal, loads, first, last, first + ONE)
+            for k in range(first + ONE, last):
+                _balance(X, internal, loads, k, k - ONE, k + ONE)
+            _balance(X, internal, loads, last, last - ONE, first)
+
+    return point_loads
+
+
+# Globals, so that compiled functions may call them and still be read from Numba's cache.
+_uniform_loads, _varying_loads = _loads(False), _loads(True)
+UNIFORM = np.zeros((0, 0))
+
+
+def point_loads(X, D, omega, rods, loads, along=UNIFORM):
     """Add the point forces and torques of the rods on the fluid, g_k = -f_k ds, m_k = -n_k ds.
 
     F^i = b_i (D^i . X' - delta_3i)                                                  (23)
@@ -106,33 +152,24 @@ def point_loads(X, D, omega, rods, loads):
     g_k = F_(k+1/2) - F_(k-1/2)                                                      (30)
     m_k = N_(k+1/2) - N_(k-1/2) + 1/2 (dX x F)_(k+1/2) + 1/2 (dX x F)_(k-1/2)        (31)
 
-    omega (3, N): strain twist at the middle of each segment; loads (6, N): g, then m.
+    omega (3, N): strain twist at the middle of each segment; loads (6, N): g, then m. along (9, N):
+    where moduli vary along the rods, a, b, and the strains of (23) at rest, of each segment.
     """
-    internal = np.empty((6, X.shape[1]))  # F in rows 0-2 and N in rows 3-5 of each segment
-    firsts, counts, closed, spacing, moduli = rods
-    for r in range(firsts.size):
-        first, ds = np.uint64(firsts[r]), spacing[r]
-        a = moduli[0, r], moduli[1, r], moduli[2, r]
-        b = moduli[3, r], moduli[4, r], moduli[5, r]
-        last = first + np.uint64(counts[r]) - ONE
-        for k in range(first, last):
-            _segment_loads(X, D, omega, a, b, ds, k, k + ONE, internal)
-        if closed[r]:
-            _segment_loads(X, D, omega, a, b, ds, last, first, internal)
-        else:
-            for c in range(6):
-                internal[c, last] = 0.0
-        _balance(X, internal, loads, first, last, first + ONE)
-        for k in range(first + ONE, last):
-            _balance(X, internal, loads, k, k - ONE, k + ONE)
-        _balance(X, internal, loads, last, last - ONE, first)
+    (_varying_loads if along.size else _uniform_loads)(X, D, omega, rods, along, loads)
 
 
 @part
 def elastic_loads(row, fixed, rods, state, loads, velocities):
     """The part of elastic rods: ``row`` is the strain twist, see :func:`point_loads`."""
-    position, director, _ = state
-    point_loads(position, director, row.reshape(3, position.shape[1]), rods, loads)
+    n = state[0].shape[1]
+    _uniform_loads(state[0], state[1], row.reshape(3, n), rods, fixed.reshape(0, 0), loads)
+
+
+@part
+def varying_loads(row, fixed, rods, state, loads, velocities):
+    """The part of rods whose moduli vary: ``fixed`` has them, see :func:`point_loads`."""
+    n = state[0].shape[1]
+    _varying_loads(state[0], state[1], row.reshape(3, n), rods, fixed.reshape(9, n), loads)
 
 
 @unsigned
@@ -153,9 +190,9 @@ def segment_strain(X, D, k, j, ds, strain, half):
             strain[3 + i] += half[i, axis] * (X[axis, j] - X[axis, k]) / ds
 
 
-@kernel(f"void({MAT}, {TRIADS}, {MAT}, {RODS}, {MAT}, {VEC})")
-def energies(X, D, omega, rods, out, length):
-    """Elastic energy (6) of each rod, split, and its present length.
+@kernel(f"void({MAT}, {TRIADS}, {MAT}, {RODS}, {MAT}, {MAT}, {VEC})")
+def energies(X, D, omega, rods, along, out, length):
+    """Elastic energy (6) of each rod, split, and its present length; ``along`` as for the loads.
 
     out (4, R): bending (i = 1, 2), twisting (i = 3), shear (i = 1, 2), stretch (i = 3), each
     1/2 ds sum_k modulus * strain^2 over the segments; length (R,): sum_k |X_(k+1) - X_k|.
@@ -172,9 +209,12 @@ def energies(X, D, omega, rods, out, length):
             segment_strain(X, D, k, j, spacing[r], strain, half)
             for i in range(3):
                 strain[i] -= omega[i, k]
+                if along.size:
+                    strain[3 + i] -= along[6 + i, k]
             for i in range(6):
                 kind = (i // 3) * 2 + (1 if i % 3 == 2 else 0)
-                out[kind, r] += 0.5 * spacing[r] * moduli[i, r] * strain[i] ** 2
+                modulus = along[i, k] if along.size else moduli[i, r]
+                out[kind, r] += 0.5 * spacing[r] * modulus * strain[i] ** 2
             length[r] += math.sqrt(
                 (X[0, j] - X[0, k]) ** 2 + (X[1, j] - X[1, k]) ** 2 + (X[2, j] - X[2, k]) ** 2
             )

@@ -70,6 +70,7 @@ def _room(plan):
     texts = (plan.case.source, plan.case.resolved, *plan.case.overrides)
     count = plan.value_bytes() + FRAME_BYTES * len(plan.times) + 4 * sum(map(len, texts))
     count += 2 * sum(np.asarray(value).nbytes for value in plan.checkpoint.values())
+    count += sum(array.nbytes for kept in plan.arrays.values() for array in kept.values())
     count += POINT_BYTES * (plan.points + plan.tracers) + ROD_BYTES * len(plan.rods)
     return count + FILE_BYTES
 
@@ -96,7 +97,7 @@ def _reserve(file, count):
 def _fill(file, plan):
     _add_root(file)
     _add_case(file.create_group("case"), plan)
-    _add_rods(file.create_group("rods"), plan.rods)
+    _add_rods(file.create_group("rods"), plan)
     _add_series(file, plan)
     _add_runtime(file.create_group("runtime"))
     allocate(file.create_group("checkpoint"), plan.checkpoint)
@@ -127,16 +128,19 @@ def _add_case(group, plan):
         group.attrs[f"{kind}_unit"] = plan.units[kind]
 
 
-def _add_rods(group, rods):
-    for index, rod in enumerate(rods):
+def _add_rods(group, plan):
+    for index, rod in enumerate(plan.rods):
         a1, a2, a3, b1, b2, b3 = rod.moduli
-        attrs = group.create_group(rod.name).attrs
+        place = group.create_group(rod.name)
+        attrs = place.attrs
         attrs["index"] = np.int64(index)
         attrs["first"], attrs["count"] = np.int64(rod.first), np.int64(rod.count)
         attrs["closed"], attrs["spacing"] = bool(rod.closed), float(rod.spacing)
         attrs["moduli"] = np.array(rod.moduli, dtype=float)
         attrs["bending"], attrs["twisting"] = [a1, a2], a3
         attrs["shear"], attrs["stretch"] = [b1, b2], b3
+        for name, array in plan.arrays.get(rod.name, {}).items():
+            place[name] = array
 
 
 def _add_series(file, plan):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -94,7 +94,8 @@ class Plan:
     position is always stored. units : names of the units of ``length``, ``mass`` and ``time``.
     density : whether kinetic energy is stored. checkpoint : the first state of the run, which all
     later ones are like: arrays and numbers by name. extra : observables that not every scene has,
-    (name, shape, dimension) each.
+    (name, shape, dimension) each. arrays : by rod, what its strain twist was made from beside the
+    case's text, by name.
     """
 
     case: CaseText
@@ -106,6 +107,7 @@ class Plan:
     density: bool
     checkpoint: dict
     extra: tuple = ()
+    arrays: dict = field(default_factory=dict)
 
     @property
     def points(self) -> int:

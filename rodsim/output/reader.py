@@ -83,6 +83,12 @@ class Trajectory:
         shape |= dict.fromkeys(layout.BALANCES, (3,))
         return self._values(f"{OBSERVABLES}/{name}", shape.get(name), frames)
 
+    def arrays(self, rod: str) -> dict[str, np.ndarray]:
+        """Return what a rod's strain twist was made from beside the case's text, by name."""
+        where = f"rods/{rod}"
+        names = self._file.names(where)
+        return {name: self._file.array(f"{where}/{name}", "f", None) for name in names}
+
     @property
     def fields(self) -> list[str]:
         """Names of the stored fields, with ``tracers`` where there are some."""

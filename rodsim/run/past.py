@@ -72,9 +72,13 @@ class Past:
                 "those of one run"
             )
 
+    def arrays(self, name: str) -> dict:
+        """Return what the strain twist of a rod was made from."""
+        return self.run.arrays(name)
+
     def shape(self, name: str, shape):
-        """Return position, director, spacing, closed of a rod that began as a shape file."""
-        if shape.kind != "file":
+        """Return position, director, spacing, closed of a rod that began as a file, else None."""
+        if shape.kind not in ("file", "curve"):
             return None
         rod = next(rod for rod in self.run.rods if rod.name == name)
         position = np.array(self.snapshot["position"][:, rod.nodes])

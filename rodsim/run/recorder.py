@@ -38,6 +38,7 @@ def plan_output(case, scene, checkpoint: dict) -> Plan:
         density=scene.density is not None,
         checkpoint=checkpoint,
         extra=extra_series(scene),
+        arrays=scene.arrays,
     )
 
 

@@ -52,6 +52,8 @@ def simulate(
     started = perf_counter()
     _refuse_sources(case, output)
     scene = build_scene(case)
+    for problem in scene.warnings:
+        listener.warn(str(problem))
     machine, recorder = _prepare(case, scene, force, started, listener)
     from rodsim.run.march import record
     from rodsim.run.recorder import plan_output
@@ -90,7 +92,7 @@ def resume(
             return Summary("finished", past.run.frames)
         for text in past.warnings():
             listener.warn(text)
-        scene = build_scene(past.case, past.shape)
+        scene = build_scene(past.case, past)
         force = bool(past.snapshot["force"])
         machine, recorder = _prepare(past.case, scene, force, started, listener)
         from rodsim.run.march import record

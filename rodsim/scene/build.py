@@ -1,41 +1,40 @@
 """Case -> scene: shapes are built and placed, all rods put into one array, geometry checked."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
-from rodsim.case import check_strain_twist, spacings_differ
+from rodsim.case import spacings_differ
 from rodsim.compiled.constants import HALF_TURN
 from rodsim.compiled.parts import PartList
-from rodsim.errors import CaseError, FileError
+from rodsim.errors import CaseError
 from rodsim.nodes import lay_out
 from rodsim.registry import kinds
 from rodsim.scene.at_wall import below_wall
+from rodsim.scene.moduli import along_rods, typical
 from rodsim.scene.neighbours import coincident
-from rodsim.scene.perturb import perturb
-from rodsim.scene.shapes import FORMULAS, place
+from rodsim.scene.rods import build_rods
 from rodsim.scene.state import Scene, State
-from rodsim.scene.stored import read_shape
 from rodsim.scene.tracers import tube
 
 PLANE_TOLERANCE = 1e-12  # of the rod's length, as the case file's contract has it
 
 
 def build_scene(case, stored=None) -> Scene:
-    """Return the scene of a validated case.
+    """Return the scene of a validated case; what looks wrong with it is in its ``warnings``.
 
-    ``stored``: called with a rod's name and shape, returns position, director, spacing, closed of
-    a rod that is not to be built from its shape, or None.
+    ``stored``: an earlier run of the case, see :func:`rodsim.scene.rods.build_rods`.
 
     Raises CaseError for what only the geometry can tell (spacings that differ, a planar scene
-    that is not, triads a half-turn apart) and FileError for a shape file.
+    that is not, triads a half-turn apart, a table that contradicts itself) and FileError for a
+    shape file or table.
     """
-    built = [_build_rod(case, name, rod, stored) for name, rod in case.rods.items()]
+    found = build_rods(case, stored)
+    built = found.rods
     rods = lay_out(
-        (name, position.shape[1], closed, spacing, rod.moduli.values)
-        for (name, rod), (position, _, spacing, closed) in zip(
-            case.rods.items(), built, strict=True
+        (name, position.shape[1], closed, spacing, typical(along))
+        for name, (position, _, spacing, closed), along in zip(
+            case.rods, built, found.moduli, strict=True
         )
     )
     position = np.ascontiguousarray(np.concatenate([rod[0] for rod in built], axis=1))
@@ -58,6 +57,10 @@ def build_scene(case, stored=None) -> Scene:
         tracer_groups=groups,
         initial=State(0.0, position, director, tracer),
         wall=case.fluid.wall and case.fluid.wall.z,
+        entries=tuple(found.entries),
+        along=along_rods(case, found, rods),
+        arrays=found.arrays,
+        warnings=tuple(found.warnings),
     )
     if problems := list(below_wall(case, scene)):
         raise CaseError(problems)
@@ -72,40 +75,6 @@ def with_parts(scene: Scene, parts) -> Scene:
     return replace(scene, initial=replace(scene.initial, work=np.zeros(scene.ledger)))
 
 
-def _folder(case):
-    return Path(case.source.path).parent if case.source and case.source.path else Path()
-
-
-def _build_rod(case, name, rod, stored):
-    """Return position, director, spacing, closed of one rod, placed."""
-    shape = rod.shape
-    if stored is not None and (found := stored(name, shape)) is not None:
-        return found
-    if shape.kind == "file":
-        try:
-            position, director, spacing, closed = read_shape(shape, _folder(case))
-        except FileError as error:
-            where = case.source.problem(("rods", name, "shape", "path"), str(error))
-            raise FileError(str(where)) from error
-        _check_stored(case, name, rod, spacing, position.shape[1] - (not closed))
-    else:
-        position, director = FORMULAS[shape.kind](shape)
-        spacing, closed = shape.ds, shape.is_closed
-    position, director = place(position, director, shape)
-    if rod.perturb is not None:
-        position, director = _perturbed(case, name, position, director, spacing, closed)
-    return position, director, spacing, closed
-
-
-def _perturbed(case, name, position, director, spacing, closed):
-    how, planar = case.rods[name].perturb, case.plane is not None
-    try:
-        return perturb(position, director, spacing, closed, how, planar)
-    except ValueError as error:
-        problem = case.source.problem(("rods", name, "perturb"), str(error))
-        raise CaseError([problem]) from error
-
-
 def _refuse_coincident(case, scene):
     """Raise CaseError where rods start through each other or themselves."""
     pair = coincident(scene)
@@ -117,17 +86,6 @@ def _refuse_coincident(case, scene):
         f"point {i} lies on {who}: rods cannot start through each other; give one another origin"
     )
     raise CaseError([case.source.problem(("rods", name, "shape"), reason)])
-
-
-def _check_stored(case, name, rod, spacing, segments):
-    """What the case file alone could not tell: the strain twist needs the file's spacing."""
-    if spacing is None:
-        reason = "missing: a text table needs the spacing of its points at rest"
-        raise CaseError([case.source.problem(("rods", name, "shape", "spacing"), reason)])
-    errors, _ = check_strain_twist(rod, spacing, segments, case.time.end)
-    if errors:
-        where = ("rods", name)
-        raise CaseError([case.source.problem((*where, *path), reason) for path, reason in errors])
 
 
 def epsilon_of(case, rods):

@@ -24,18 +24,9 @@ def restore_scene(run) -> Scene:
     case, first = restore_case(run), stored_state(run, 0)
     case = case.model_copy(update={"tracers": {}})
 
-    def stored(name, shape):
-        rod = next(rod for rod in run.rods if rod.name == name)
-        return (
-            first.position[:, rod.nodes],
-            first.director[:, :, rod.nodes],
-            rod.spacing,
-            rod.closed,
-        )
-
     try:
-        scene = build_scene(case, stored)
-    except (ValueError, StopIteration, CaseError) as error:
+        scene = build_scene(case, _Frame(run, first))
+    except (ValueError, CaseError) as error:
         raise FileError(f"{run.path}: damaged: the case in it cannot be used: {error}") from error
     if scene.rods != run.rods:
         raise FileError(f"{run.path}: damaged: its rods are not those of its case")
@@ -64,3 +55,21 @@ def stored_state(run, frame: int) -> State:
     position = np.ascontiguousarray(run.read("position", frame).T)
     director = np.ascontiguousarray(run.read("director", frame).transpose(1, 2, 0))
     return State(float(run.time[frame]), position, director, np.zeros((3, 0)))
+
+
+class _Frame:
+    """A frame of a stored run in place of the shapes of its rods, see ``build_rods``."""
+
+    def __init__(self, run, state):
+        self.arrays = run.arrays
+        self._rods, self._state = {rod.name: rod for rod in run.rods}, state
+
+    def shape(self, name, shape):
+        """Return position, director, spacing, closed of a rod."""
+        rod, state = self._rods[name], self._state
+        return (
+            state.position[:, rod.nodes],
+            state.director[:, :, rod.nodes],
+            rod.spacing,
+            rod.closed,
+        )

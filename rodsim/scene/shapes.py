@@ -7,6 +7,8 @@ perturbed straight rod of (40)-(43): nearly).
 
 import numpy as np
 
+from rodsim.scene.arcs import equal_arcs
+
 
 def straight(shape):
     """Eqs. (40)-(43): the z axis stretched by 1 + xi, triads turned about x by xi."""
@@ -53,38 +55,18 @@ def sine(shape):
     def slope(z):
         return shape.amplitude * k * np.cos(k * z + shape.phase)
 
-    z = _equal_arcs(slope, shape.points, shape.ds, shape.wavelength)
+    def speed(z):
+        return np.hypot(1.0, slope(z))
+
+    target = np.arange(shape.points) * shape.ds
+    cell = min(shape.wavelength / 64.0, max(shape.ds * shape.points, 1e-300))
+    edges = np.arange(int(np.ceil(target[-1] / cell)) + 2) * cell
+    z = equal_arcs(speed, edges, target, max(target[-1], cell))
     one, zero = np.ones_like(z), np.zeros_like(z)
     position = np.array([zero, shape.amplitude * np.sin(k * z + shape.phase), z])
     tangent = np.array([zero, slope(z), one]) / np.hypot(slope(z), 1.0)
     first = np.array([one, zero, zero])
     return position, np.array([first, np.cross(tangent, first, axis=0), tangent])
-
-
-def _equal_arcs(slope, points, ds, wavelength):
-    """Return z (points,) at equal arc steps ds of a curve with slope dy/dz, from z = 0.
-
-    Gauss-Legendre quadrature of the arc length over cells of 1/64 wavelength (error below
-    rounding), then Newton's method inside the cell of each point.
-    """
-    node, weight = np.polynomial.legendre.leggauss(12)
-
-    def arc(a, b):
-        middle, half = 0.5 * (a + b)[:, None], 0.5 * (b - a)[:, None]
-        return np.sum(weight * half * np.hypot(1.0, slope(middle + half * node)), axis=1)
-
-    target = np.arange(points) * ds
-    cell = min(wavelength / 64.0, max(ds * points, 1e-300))
-    edges = np.arange(int(np.ceil(target[-1] / cell)) + 2) * cell
-    total = np.concatenate([[0.0], np.cumsum(arc(edges[:-1], edges[1:]))])
-    left = np.clip(np.searchsorted(total, target, side="right") - 1, 0, len(edges) - 2)
-    z = edges[left] + (target - total[left]) / np.hypot(1.0, slope(edges[left]))
-    for _ in range(60):
-        change = (total[left] + arc(edges[left], z) - target) / np.hypot(1.0, slope(z))
-        z = np.clip(z - change, edges[left], edges[left + 1])
-        if np.max(np.abs(change)) < 1e-15 * max(target[-1], cell):
-            break
-    return z
 
 
 def place(position, director, shape):

@@ -34,7 +34,15 @@ class State:
 
 @dataclass(frozen=True)
 class Scene:
-    """A case made ready to run. ``wall``: its height, or None where there is none."""
+    """A case made ready to run.
+
+    wall : its height, or None where there is none.
+    entries : of each rod, its strain twist, three numbers or functions of s and t.
+    along (9, N) : where moduli vary or rods are at rest as they are built, six moduli and three
+    rest strains (shear, stretch) of each segment.
+    arrays : by rod, what its strain twist was made from beside the case's text, by name.
+    warnings : Problems that do not stop a run, and that only the geometry could tell.
+    """
 
     rods: Rods
     epsilon: float
@@ -45,6 +53,10 @@ class Scene:
     tracer_groups: dict[str, int]
     initial: State
     wall: float | None = None
+    entries: tuple = ()
+    along: np.ndarray | None = None
+    arrays: dict = field(default_factory=dict)
+    warnings: tuple = ()
     parts: PartList = NO_PARTS
 
     @property

@@ -5,7 +5,7 @@ import pytest
 import twins
 
 from rodsim.compiled.rotations import rotate
-from rodsim.forces.elasticity import energies, first_half_turn, point_loads, segment_strain
+from rodsim.forces.elasticity import UNIFORM, energies, first_half_turn, point_loads, segment_strain
 from rodsim.nodes import lay_out
 from rodsim.scene.shapes import rotation_matrix
 
@@ -38,7 +38,7 @@ def loads_of(X, D, omega, rods):
 
 def energy_of(X, D, omega, rods):
     split, length = np.empty((4, len(rods.names))), np.empty(len(rods.names))
-    energies(X, D, omega, rods.tables, split, length)
+    energies(X, D, omega, rods.tables, UNIFORM, split, length)
     return split
 
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from rodsim.compiled.rotations import rotate
 from rodsim.flows.fluid import fluid_parts
-from rodsim.forces.elastic import elastic_part, strain_twist
+from rodsim.forces.elastic import elastic_part
 from rodsim.integrators.rk4 import RK4
 from rodsim.nodes import lay_out
 from rodsim.scene.build import with_parts
@@ -79,9 +79,9 @@ def at_start(*arrays):
 
 def acting(scene, segments):
     """The scene with that strain twist, and its fluid."""
-    entries = [[Values(row, 31.0) for row in rows] for rows in segments]
-    twisted = elastic_part(strain_twist(entries, scene.rods))
-    return with_parts(scene, [twisted, *fluid_parts(scene)])
+    entries = tuple(tuple(Values(row, 31.0) for row in rows) for rows in segments)
+    scene = replace(scene, entries=entries)
+    return with_parts(scene, [elastic_part(scene), *fluid_parts(scene)])
 
 
 def fields_of(scene):

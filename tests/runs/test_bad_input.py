@@ -126,9 +126,9 @@ ONE_PROBLEM = [
     ("-k**2*b*sin(k*s + sigma*t)", "-" * 900 + "1", 20, f"{TWIST}.0 =", "nested deeper"),
     ("-k**2*b*sin(k*s + sigma*t)", "(" * 100_000, 20, f"{TWIST}.0 =", "at most 20000"),
     ("-k**2*b*sin(k*s + sigma*t)", "40*cos(s)", 20, TWIST, "no rest state"),
-    (", 0, 0]\nplane", ", 0]\nplane", 20, TWIST, "list of 3 numbers or expressions"),
+    (", 0, 0]\nplane", ", 0]\nplane", 20, TWIST, "natural or a list of 3 numbers, expressions"),
     (", 0, 0]\nplane", ", 0, true]\nplane", 20, f"{TWIST}.2 = true",
-     "must be a number or an expression (um^-1)"),
+     "must be a number, an expression or a mapping with table"),
     (", 0, 0]\nplane", ", 0, 0.1]\nplane", 20, f"{TWIST}.2 = 0.1", "where plane is yz"),
     (", 0, 0]\nplane", ", '0*s', 0]\nplane", 20, f"{TWIST}.1 = 0*s", "must be the number 0"),
     # names and unknown keys

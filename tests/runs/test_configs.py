@@ -8,6 +8,7 @@ from scenes import CONFIGS
 from rodsim import open_trajectory
 from rodsim.analysis.helix import fit_helix
 from rodsim.analysis.swimming import swimming_velocity
+from rodsim.analysis.topology import twist, writhe
 from rodsim.cli import main
 
 PERIOD = 2 * np.pi / 400
@@ -120,8 +121,34 @@ def test_markers_of_the_low_twist_ring_are_stored(tmp_path):
         assert abs(np.diff(trajectory.tracers, axis=0)).max() > 1e-3
 
 
+@pytest.mark.compiled
+def test_the_traced_filament_straightens(tmp_path):
+    """The curve that the table was made from has 0.00563 by quadrature: smoothing keeps 94 %."""
+    with run("traced_filament", tmp_path) as trajectory:
+        energy = total(trajectory)
+        assert energy[0] == pytest.approx(0.0053, rel=2e-3)
+        assert energy[0] == pytest.approx(0.00563, rel=0.07)
+        assert energy[-1] == pytest.approx(5.1e-7, rel=0.02)
+    options = ("--set", "rods.filament.shape.smoothing=0", "--set", "time.end=5.0e-4")
+    with run("traced_filament", tmp_path, *options, "--overwrite") as trajectory:
+        assert trajectory.observable("bending_energy")[0, 0] == pytest.approx(0.229, rel=5e-3)
+
+
+@pytest.mark.compiled
+def test_the_plasmid_keeps_its_linking_number(tmp_path):
+    with run("plasmid", tmp_path) as trajectory:
+        energy = total(trajectory)
+        assert energy[0] == pytest.approx(108.2, rel=1e-3)
+        assert energy[-1] == pytest.approx(69.9, rel=1e-2)
+        for frame in (0, 30, 60):
+            X, D = trajectory.position[frame], trajectory.director[frame]
+            assert writhe(X) + twist(X, D) == pytest.approx(-2, abs=1e-9)
+        assert writhe(X) == pytest.approx(-0.76, abs=0.01)
+
+
 def test_every_config_is_tested_here():
     assert {path.stem for path in CONFIGS.glob("*.yaml")} == {
         "open_rod", "open_rod_half_twist", "closed_ring", "closed_ring_low_twist", "flagellum",
         "two_flagella", "carpet",
+        "plasmid", "traced_filament",
     }  # fmt: skip

@@ -22,16 +22,18 @@ from rodsim.scene.build import build_scene
 from rodsim.scene.system import RodSystem
 
 MOST_POINTS = 400  # larger scenes are valid, and only built: their step takes too long here
-SMALL = ("points: 200", "points: 600", "points: 151", "points: 41", "points: 76", "along: 100")
+SMALL = ("points: 200", "points: 600", "points: 151", "points: 41", "points: 76", "points: 101",
+         "points: 150", "along: 100")  # fmt: skip
 TEXTS = [path.read_text() for path in sorted(CONFIGS.glob("*.yaml"))]
 TEXTS += [template(kind) for kind in TEMPLATES]
+TEXTS = [text.replace("path: traced", f"path: {CONFIGS}/traced") for text in TEXTS]
 for words in SMALL:
     TEXTS = [text.replace(words, words.partition(":")[0] + ": 12") for text in TEXTS]
 
 
 def one_step(case):
     """Return what becomes of a valid case: refused by its geometry, diverged, or a good step."""
-    total = sum(getattr(rod.shape, "points", 0) for rod in case.rods.values())
+    total = sum(getattr(rod.shape, "points", 0) or 0 for rod in case.rods.values())
     markers = sum(getattr(g, "around", 1) * getattr(g, "along", 1) for g in case.tracers.values())
     if total + markers > MOST_POINTS:
         return "valid, large"

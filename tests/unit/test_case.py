@@ -185,17 +185,17 @@ def test_rest_state_is_looked_for_at_the_end_as_well(load):
 
 def test_strain_twist_is_taken_at_midpoints(load):
     rod = load(RING, ["rods.ring.strain_twist=['where(s < 0.05, 0, 1)', 0, 0]"]).rods["ring"]
-    errors, warnings = check_strain_twist(rod, ds=1.9, segments=1, end=0.0)  # s = 0.95
+    errors, warnings = check_strain_twist(rod.entries, ds=1.9, segments=1, end=0.0)  # s = 0.95
     assert not errors
     assert "at s = 0.95" in warnings[0][1]
-    assert check_strain_twist(rod, ds=0.09, segments=1, end=0.0) == ([], [])  # s = 0.045
-    errors, _ = check_strain_twist(rod, ds=2.1, segments=3, end=0.0)
+    assert check_strain_twist(rod.entries, ds=0.09, segments=1, end=0.0) == ([], [])  # s = 0.045
+    errors, _ = check_strain_twist(rod.entries, ds=2.1, segments=3, end=0.0)
     assert errors[0][0] == ("strain_twist",)
 
 
 def test_huge_rods_are_sampled(load):
     rod = load(RING, ["rods.ring.strain_twist=['s*0', 0, 0]"]).rods["ring"]
-    assert check_strain_twist(rod, ds=1e-3, segments=10**9, end=0.0) == ([], [])
+    assert check_strain_twist(rod.entries, ds=1e-3, segments=10**9, end=0.0) == ([], [])
 
 
 @pytest.mark.parametrize("name", TEMPLATES)
@@ -258,8 +258,10 @@ def test_schema_knows_the_unions_and_describes_every_key():
     assert {"exclusiveMinimum": 0, "type": ["number", "string"]} in epsilon
     bending = definitions["Moduli"]["properties"]["bending"]["oneOf"]
     assert [member["type"] for member in bending] == [["number", "string"], "array"]
-    entry = definitions["Rod"]["properties"]["strain_twist"]["items"][0]["oneOf"]
-    assert [member["type"] for member in entry] == ["number", "string"]
+    natural, triple = definitions["Rod"]["properties"]["strain_twist"]["oneOf"]
+    assert natural["const"] == "natural"
+    entry = triple["items"][0]["oneOf"]
+    assert [member.get("type") for member in entry] == ["number", "string", None]
     assert definitions["Fluid"]["required"] == ["viscosity", "epsilon"]
     for model in definitions.values():
         assert model["additionalProperties"] is False

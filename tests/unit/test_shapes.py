@@ -99,8 +99,8 @@ def test_sine_has_equal_arc_steps_in_its_plane(build):
         "{kind: ring, radius: 1.7, points: 30, twist_perturbation: 0.7}",
         "{kind: helix, radius: 0.6, pitch: -0.9, points: 30, length: 5.0}",
         "{kind: sine, amplitude: 0.8, wavelength: 2.1, points: 30, length: 4.0}",
-        "{kind: file, path: rod.txt, spacing: 0.25}",
-        "{kind: file, path: rod.txt, spacing: 0.25, closed: true}",
+        "{kind: file, path: rod.txt, spacing: 0.25, as_is: true}",
+        "{kind: file, path: rod.txt, spacing: 0.25, closed: true, as_is: true}",
     ],
 )
 def test_no_shape_has_a_net_force_or_torque(build, tmp_path, shape):
@@ -129,7 +129,7 @@ def test_rotate_comes_before_origin(build):
 def test_table_of_a_rod_that_starts_stretched(build, tmp_path):
     rows = [[0, 0, 0.5 * k, *np.eye(3).ravel()] for k in range(4)]
     np.savetxt(tmp_path / "rod.txt", rows, header="x y z D1 D2 D3")
-    scene = build("{kind: file, path: rod.txt, spacing: 0.25}")
+    scene = build("{kind: file, path: rod.txt, spacing: 0.25, as_is: true}")
     assert scene.initial.position[2].tolist() == [0, 0.5, 1.0, 1.5]
     assert scene.rods.spacing.tolist() == [0.25]
     assert scene.rods.closed.tolist() == [False]

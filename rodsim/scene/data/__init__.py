@@ -1,0 +1,1 @@
+"""What people bring: text tables and other programs' files, read into points and triads."""
