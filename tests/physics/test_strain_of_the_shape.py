@@ -87,7 +87,7 @@ def test_components_of_natural_in_expressions(build):
         )
         assert omega[1] == pytest.approx(own[2, :59], rel=1e-13)
         assert omega[2] == pytest.approx(own[1, :59] - 0.25, rel=1e-13)
-    assert found.strain_twist.driven
+    assert found.parts.driven
 
 
 def wave(s, t):
