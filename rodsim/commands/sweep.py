@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from rodsim.commands.common import case_argument, prepare_numba, set_option
+from rodsim.commands.common import case_argument, prepare_numba, set_option, warn
 
 _FILE, _FOLDER = (click.Path(path_type=Path, dir_okay=d, file_okay=not d) for d in (False, True))
 
@@ -44,18 +44,21 @@ def sweep(case_path, overrides, table, folder, jobs, threads, scheduler, only_li
     what was stopped is resumed.
     """
     from rodsim.sweep.plan import make_plan
+    from rodsim.sweep.standing import DONE
     from rodsim.sweep.summary import Summary
-    from rodsim.sweep.work import DONE, command
+    from rodsim.sweep.work import command
 
     plan = make_plan(case_path, overrides, table, folder)
     summary = Summary(plan, period, reference)
     pictures = [(summary.column(x), summary.column(y), path) for x, y, path in plots]
     left = [run for run in plan.runs if summary.rows[run.name]["status"] not in DONE]
-    for run in left:
-        run.prepare()
+    _say_what_is_anew(left, summary)
     if only_list:
         for run in left:
-            click.echo(shlex.join(command(run, summary.rows[run.name]["status"])))
+            status = summary.rows[run.name]["status"]
+            if status != "running":
+                run.prepare()
+                click.echo(shlex.join(command(run, status)))
         return
     table_path = folder / "summary.csv"
     try:
@@ -70,6 +73,20 @@ def sweep(case_path, overrides, table, folder, jobs, threads, scheduler, only_li
         for x, y, path in pictures:
             _draw(summary, x, y, path)
     summary.check()
+
+
+def _say_what_is_anew(left, summary):
+    """Name what has changed since runs that are done again, and say what others are doing."""
+    from collections import Counter
+
+    from rodsim.sweep.standing import changed_inputs
+
+    changed = Counter(file for run in left for file in changed_inputs(run))
+    for file, count in changed.items():
+        warn(f"{file} has changed: {count} of the runs that began with it are run again")
+    running = sum(summary.rows[run.name]["status"] == "running" for run in left)
+    if running:
+        click.echo(f"{running} of the runs are being done by other processes", err=True)
 
 
 def _run(left, summary, table_path, options):
@@ -88,7 +105,7 @@ def _run(left, summary, table_path, options):
 
         def ended(run, failure):
             display.ended(summary.update(run, failure))
-            summary.write(table_path)
+            summary.write_now_and_then(table_path)
 
         engine.Sweep(client, threads, ended).finish(left, display)
 
@@ -96,11 +113,11 @@ def _run(left, summary, table_path, options):
 def _compile(left, quiet):
     """Compile once what the runs need, instead of in every one of them at the same time."""
     prepare_numba()
-    from rodsim.case import load_case
+    from rodsim.case import case_from_mapping
     from rodsim.run.warmup import ensure_compiled
 
     for run in left:
-        ensure_compiled(load_case(run.case), lambda line: quiet or click.echo(line, err=True))
+        ensure_compiled(case_from_mapping(run.data), lambda line: quiet or click.echo(line, err=True))
 
 
 @contextmanager

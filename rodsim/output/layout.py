@@ -65,11 +65,15 @@ RUNTIME = {
 
 @dataclass(frozen=True)
 class CaseText:
-    """What ``/case`` holds: source and resolved case as text, and the ``--set`` options."""
+    """What ``/case`` holds: source and resolved case as text, and the ``--set`` options.
+
+    ``inputs`` : digests of the files that the case names, as JSON; "" where it names none.
+    """
 
     source: str
     resolved: str
     overrides: list[str]
+    inputs: str = ""
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import numpy as np
 from rodsim.errors import StepFailure
 from rodsim.output import CaseText, Plan, RodRecord
 from rodsim.output.writer import NotFinite
+from rodsim.scene.inputs import case_digests
 
 SECONDS_BETWEEN_CHECKPOINTS = 60.0  # at most, if no frame comes
 SECONDS_BETWEEN_SYNCS = 10.0  # at least: waiting for the disk at every frame would cost too much
@@ -37,9 +38,14 @@ def plan_output(case, scene, checkpoint: dict) -> Plan:
         )
         for r, name in enumerate(rods.names)
     ]
-    source = case.source
+    source, inputs = case.source, case_digests(case)
     return Plan(
-        case=CaseText(source.text, json.dumps(case.resolved(), indent=1), list(source.overrides)),
+        case=CaseText(
+            source.text,
+            json.dumps(case.resolved(), indent=1),
+            list(source.overrides),
+            json.dumps(inputs, indent=1) if inputs else "",
+        ),
         rods=records,
         times=frame_times(case.time.end, case.interval),
         tracers=scene.initial.tracer.shape[1],

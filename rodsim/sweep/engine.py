@@ -9,7 +9,6 @@ from contextlib import contextmanager
 from time import sleep
 
 from rodsim.errors import DivergedError, StoppedError, UsageError
-from rodsim.sweep.summary import last_line
 from rodsim.sweep.work import stop, work
 
 try:
@@ -117,10 +116,10 @@ class Sweep:
         problem = future.exception()
         if problem is not None:
             return self.ended(run, f"{type(problem).__name__}: {problem}".split("\n")[0])
-        code = future.result()
+        code, said = future.result()
         cut_short = code == StoppedError.exit_code or code < 0  # negative: by a signal
         if cut_short and not self.stopping and self.attempts[run.name] < ATTEMPTS:
             return self._submit(run)
         if code in (0, DivergedError.exit_code) or cut_short:
             return self.ended(run, None)
-        return self.ended(run, last_line(run.log) or f"its command ended with code {code}")
+        return self.ended(run, said or f"its command ended with code {code}")
