@@ -107,7 +107,7 @@ def _run(left, summary, table_path, options):
             display.ended(summary.update(run, failure))
             summary.write_now_and_then(table_path)
 
-        engine.Sweep(client, threads, ended).finish(left, display)
+        engine.Sweep(client, threads, ended, summary.update).finish(left, display)
 
 
 def _compile(left, quiet):
@@ -116,8 +116,12 @@ def _compile(left, quiet):
     from rodsim.case import case_from_mapping
     from rodsim.run.warmup import ensure_compiled
 
+    def say(line):
+        if not quiet:
+            click.echo(line, err=True)
+
     for run in left:
-        ensure_compiled(case_from_mapping(run.data), lambda line: quiet or click.echo(line, err=True))
+        ensure_compiled(case_from_mapping(run.data), say)
 
 
 @contextmanager

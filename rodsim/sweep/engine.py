@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import signal
 import uuid
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from time import sleep
 
 from rodsim.errors import DivergedError, StoppedError, UsageError
@@ -65,22 +65,27 @@ def local_cluster(jobs: int, threads: int):
 @contextmanager
 def remote_cluster(address: str):
     """Connect to a scheduler that is there already; yield the client."""
+    logging.disable()  # what goes wrong is said here, in a line
     try:
         client = distributed.Client(address, timeout=CONNECT_SECONDS)
     except (OSError, TimeoutError, ValueError) as error:
         raise UsageError(f"--scheduler {address}: cannot be reached: {error}") from error
-    with client:
-        yield client
+    try:
+        with client:
+            yield client
+    finally:
+        logging.disable(logging.NOTSET)
 
 
 class Sweep:
     """Runs on their way through a cluster. ``ended(run, failure)`` is called for each.
 
     ``failure`` is the text of what went wrong, or None where the output says how the run ended.
+    ``left(run)`` is called for those whose end was not seen.
     """
 
-    def __init__(self, client, threads, ended):
-        self.client, self.threads, self.ended = client, threads, ended
+    def __init__(self, client, threads, ended, left):
+        self.client, self.threads, self.ended, self.left = client, threads, ended, left
         self.token = uuid.uuid4().hex
         self.pending, self.attempts, self.stopping = {}, {}, False
 
@@ -93,8 +98,12 @@ class Sweep:
         except KeyboardInterrupt:
             self.stopping = True
             display.say("stopping the runs, they can be resumed; Ctrl-C again leaves at once")
+            self._drop_what_waits()
             self._wait(display)
             raise
+        finally:  # also of those whose end we did not see
+            for run in self.pending.values():
+                self.left(run)
 
     def _submit(self, run):
         attempt = self.attempts[run.name] = self.attempts.get(run.name, 0) + 1
@@ -102,10 +111,27 @@ class Sweep:
         future = self.client.submit(work, self.token, run, self.threads, key=key, pure=False)
         self.pending[future] = run
 
+    def _drop_what_waits(self):
+        """Take back what no worker has: told to stop before, none of them begins it any more."""
+        self._tell_workers()
+        begun = {key for keys in self.client.processing().values() for key in keys}
+        waiting = [future for future in self.pending if future.key not in begun]
+        self.client.cancel(waiting)
+        for future in waiting:
+            self.left(self.pending.pop(future))
+
+    def _tell_workers(self):
+        with suppress(OSError):  # the scheduler is gone: seen by who waits
+            self.client.run(stop, self.token, on_error="ignore")
+
     def _wait(self, display):
         while self.pending:
+            if any(future.cancelled() for future in self.pending):  # nobody does that but Dask
+                raise StoppedError(
+                    "the scheduler is gone; with another one the same command goes on"
+                )
             if self.stopping:  # again and again: a worker may have been started since
-                self.client.run(stop, self.token, on_error="ignore")
+                self._tell_workers()
             for future in [future for future in self.pending if future.done()]:
                 self._end(self.pending.pop(future), future)
             display.look()
