@@ -127,9 +127,7 @@ class Sweep:
     def _wait(self, display):
         while self.pending:
             if any(future.cancelled() for future in self.pending):  # nobody does that but Dask
-                raise StoppedError(
-                    "the scheduler is gone; with another one the same command goes on"
-                )
+                raise StoppedError("the scheduler is gone; on another one the same command goes on")
             if self.stopping:  # again and again: a worker may have been started since
                 self._tell_workers()
             for future in [future for future in self.pending if future.done()]:

@@ -32,7 +32,7 @@ def _lines(path):
         for number, line in enumerate(StringIO(_text(path), newline=None), 1)
         if line.strip() and not line.startswith("#")
     ]
-    found, reader = [], csv.reader(line for _, line in lines)
+    found, reader = [], csv.reader((line for _, line in lines), strict=True)
     try:
         begin = 0  # a quoted cell can go on over lines
         for cells in reader:

@@ -119,9 +119,9 @@ def _wait_while(look, sweep, run):
         if sweep in _stopped:
             return STOPPED
         now = run.output.stat().st_mtime if run.output.exists() else None
-        if now != seen or found.sure:
+        if now != seen:
             seen, since = now, monotonic()
-        if monotonic() - since > PATIENCE:
+        if not found.sure and monotonic() - since > PATIENCE:
             return FileError.exit_code, _in_vain(run, found)
         sleep(POLL_SECONDS)
     return None
