@@ -171,7 +171,7 @@ def test_the_table_is_not_written_at_every_end(here, monkeypatch):
          "t.csv:2: fluid.viscosity: two columns have it: column 1, column 3"),
         (["time.end=0.03"], "time.end\n0.02\n", UsageError, "set by --set and by t.csv"),
         (["time.end=0.03", "time.end=[0.02]"], None, UsageError, "a value and a list of values"),
-        ([], 'time.end\n"0.02\n', CaseError, "time.end"),
+        ([], 'time.end\n"0.02\n', CaseError, "t.csv:2: is not CSV: unexpected end"),
         (["time.end=[0.03]"], "time.end\n0.02\n", UsageError, "set by --set and by t.csv"),
     ],
 )  # fmt: skip
