@@ -44,10 +44,10 @@ class NamedLock:
         for _ in range(LOOKS):
             if self._handle is not None:
                 return None
-            with suppress(FileNotFoundError):  # given back since we looked
-                found = self._try(*self._open())
-                if found:
-                    return found
+            opened = self._open()
+            found = self._try(*opened) if opened else None
+            if found:
+                return found
         return Holder("other processes, in turn", sure=True)
 
     def release(self) -> None:
@@ -61,12 +61,14 @@ class NamedLock:
         kernel_locks.let_go(handle)
 
     def _open(self):
-        """Return the open file of the lock, and whether it is new."""
+        """Return the open file of the lock and whether it is new; None where it has just gone."""
         flags = os.O_RDWR | NOT_THROUGH_LINKS
         try:
             return os.open(self.path, flags | os.O_CREAT | os.O_EXCL, 0o644), True
         except FileExistsError:
-            return os.open(self.path, flags), False
+            with suppress(FileNotFoundError):
+                return os.open(self.path, flags), False
+        return None
 
     def _try(self, handle, made):
         """Lock an open file and keep it, or return who has it, or None to look again."""
@@ -106,7 +108,10 @@ class NamedLock:
     def _remove_stale(self, owner):
         """Remove a stale lock where the system has none: of two who try, only one can rename it."""
         aside = self.path.with_name(f"{self.path.name}.{secrets.token_hex(8)}")
-        os.rename(self.path, aside)
+        try:
+            os.rename(self.path, aside)
+        except FileNotFoundError:
+            return None
         now = Process.parse(aside.read_text(errors="replace"))
         if now != owner:  # taken over between our two looks
             os.rename(aside, self.path)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import signal
 import uuid
+from concurrent.futures import CancelledError
 from contextlib import contextmanager, suppress
 from time import sleep
 
@@ -90,10 +91,23 @@ class Sweep:
         self.pending, self.attempts, self.stopping = {}, {}, False
 
     def finish(self, runs, display) -> None:
-        """Do all runs. Ctrl-C stops them, ready to be resumed; a second one does not wait."""
-        for run in runs:
-            self._submit(run)
+        """Do all runs. Ctrl-C stops them, ready to be resumed; a second one does not wait.
+
+        Raises StoppedError where the scheduler is lost.
+        """
         try:
+            self._do(runs, display)
+        except CancelledError:  # nobody does that but Dask, and only when it has no scheduler
+            gone = "the scheduler is gone; on another one the same command goes on"
+            raise StoppedError(gone) from None
+        finally:  # also of those whose end we did not see
+            for run in self.pending.values():
+                self.left(run)
+
+    def _do(self, runs, display):
+        try:
+            for run in runs:
+                self._submit(run)
             self._wait(display)
         except KeyboardInterrupt:
             self.stopping = True
@@ -101,9 +115,6 @@ class Sweep:
             self._drop_what_waits()
             self._wait(display)
             raise
-        finally:  # also of those whose end we did not see
-            for run in self.pending.values():
-                self.left(run)
 
     def _submit(self, run):
         attempt = self.attempts[run.name] = self.attempts.get(run.name, 0) + 1
@@ -126,8 +137,8 @@ class Sweep:
 
     def _wait(self, display):
         while self.pending:
-            if any(future.cancelled() for future in self.pending):  # nobody does that but Dask
-                raise StoppedError("the scheduler is gone; on another one the same command goes on")
+            if any(future.cancelled() for future in self.pending):
+                raise CancelledError
             if self.stopping:  # again and again: a worker may have been started since
                 self._tell_workers()
             for future in [future for future in self.pending if future.done()]:

@@ -15,6 +15,7 @@ from outputs import create, write
 from rodsim import kernel_locks
 from rodsim.errors import FileError
 from rodsim.export.tables import write_csv
+from rodsim.locks import NamedLock
 from rodsim.output.paths import OutputLock, free_name, writing_process
 from rodsim.processes import this_process
 
@@ -280,3 +281,8 @@ def test_places_that_cannot_hold_an_output(tmp_path, path):
     (tmp_path / "folder").mkdir()
     with pytest.raises(FileError, match=path):
         create(tmp_path / path)
+
+
+def test_a_lock_in_a_folder_that_is_gone_is_an_error(tmp_path):
+    with pytest.raises(FileNotFoundError):
+        NamedLock(tmp_path / "gone" / "run.lock").take()
