@@ -101,13 +101,14 @@ def _run(left, summary, table_path, options):
         _compile(left, quiet)
         jobs, threads = engine.share(len(left), jobs, threads)
         cluster = engine.local_cluster(jobs, threads)
-    with _signals_stop(), cluster as client, make_display(summary, quiet) as display:
+    with _signals() as heard, cluster as client, make_display(summary, quiet) as display:
 
         def ended(run, failure):
             display.ended(summary.update(run, failure))
             summary.write_now_and_then(table_path)
 
-        engine.Sweep(client, threads, ended, summary.update).finish(left, display)
+        sweep = engine.Sweep(client, threads, ended, summary.update, lambda: bool(heard))
+        sweep.finish(left, display)
 
 
 def _compile(left, quiet):
@@ -125,11 +126,17 @@ def _compile(left, quiet):
 
 
 @contextmanager
-def _signals_stop():
-    """Let what ends a job from outside stop it as Ctrl-C does."""
+def _signals():
+    """Yield a list of the signals heard: whatever ends a job from outside stops it as Ctrl-C does.
 
-    def interrupt(*_):
-        raise KeyboardInterrupt
+    The second one does not wait: KeyboardInterrupt.
+    """
+    heard = []
+
+    def interrupt(number, _):
+        heard.append(number)
+        if len(heard) > 1:
+            raise KeyboardInterrupt
 
     numbers = [signal.SIGINT, signal.SIGTERM]
     hangup = getattr(signal, "SIGHUP", None)  # not everywhere; nohup has it ignored
@@ -137,7 +144,7 @@ def _signals_stop():
         numbers.append(hangup)
     before = {number: signal.signal(number, interrupt) for number in numbers}
     try:
-        yield
+        yield heard
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import logging
 import signal
 import uuid
@@ -82,39 +83,33 @@ class Sweep:
     """Runs on their way through a cluster. ``ended(run, failure)`` is called for each.
 
     ``failure`` is the text of what went wrong, or None where the output says how the run ended.
-    ``left(run)`` is called for those whose end was not seen.
+    ``left(run)`` is called for those whose end was not seen. ``asked()`` tells whether to stop; it
+    is looked at, since an exception in the middle of one of Dask's calls leaves it in disorder.
     """
 
-    def __init__(self, client, threads, ended, left):
+    def __init__(self, client, threads, ended, left, asked):
         self.client, self.threads, self.ended, self.left = client, threads, ended, left
+        self.asked = asked
         self.token = uuid.uuid4().hex
         self.pending, self.attempts, self.stopping = {}, {}, False
 
     def finish(self, runs, display) -> None:
-        """Do all runs. Ctrl-C stops them, ready to be resumed; a second one does not wait.
+        """Do all runs. If asked to, stop them, ready to be resumed: KeyboardInterrupt.
 
         Raises StoppedError where the scheduler is lost.
         """
         try:
-            self._do(runs, display)
+            for run in itertools.takewhile(lambda _: not self.asked(), runs):
+                self._submit(run)
+            self._wait(display)
         except CancelledError:  # nobody does that but Dask, and only when it has no scheduler
             gone = "the scheduler is gone; on another one the same command goes on"
             raise StoppedError(gone) from None
         finally:  # also of those whose end we did not see
             for run in self.pending.values():
                 self.left(run)
-
-    def _do(self, runs, display):
-        try:
-            for run in runs:
-                self._submit(run)
-            self._wait(display)
-        except KeyboardInterrupt:
-            self.stopping = True
-            display.say("stopping the runs, they can be resumed; Ctrl-C again leaves at once")
-            self._drop_what_waits()
-            self._wait(display)
-            raise
+        if self.stopping:
+            raise KeyboardInterrupt
 
     def _submit(self, run):
         attempt = self.attempts[run.name] = self.attempts.get(run.name, 0) + 1
@@ -122,29 +117,32 @@ class Sweep:
         future = self.client.submit(work, self.token, run, self.threads, key=key, pure=False)
         self.pending[future] = run
 
-    def _drop_what_waits(self):
-        """Take back what no worker has: told to stop before, none of them begins it any more."""
-        self._tell_workers()
-        begun = {key for keys in self.client.processing().values() for key in keys}
-        waiting = [future for future in self.pending if future.key not in begun]
-        self.client.cancel(waiting)
-        for future in waiting:
-            self.left(self.pending.pop(future))
-
-    def _tell_workers(self):
-        with suppress(OSError):  # the scheduler is gone: seen by who waits
-            self.client.run(stop, self.token, on_error="ignore")
-
     def _wait(self, display):
         while self.pending:
             if any(future.cancelled() for future in self.pending):
                 raise CancelledError
-            if self.stopping:  # again and again: a worker may have been started since
-                self._tell_workers()
+            if self.asked():  # again and again: a worker may have been started since
+                if not self.stopping:
+                    display.say(
+                        "stopping the runs, they can be resumed; Ctrl-C again leaves at once"
+                    )
+                self.stopping = True
+                self._stop()
             for future in [future for future in self.pending if future.done()]:
                 self._end(self.pending.pop(future), future)
             display.look()
             sleep(POLL_SECONDS)
+
+    def _stop(self):
+        """Stop what the workers are at and take back the rest: none of it is begun any more."""
+        begun = []
+        with suppress(OSError):  # the scheduler is gone: seen by who waits
+            for names in self.client.run(stop, self.token, on_error="ignore").values():
+                begun += names
+            waiting = [f for f, run in self.pending.items() if run.name not in begun]
+            self.client.cancel(waiting)
+            for future in waiting:
+                self.left(self.pending.pop(future))
 
     def _end(self, run, future):
         """Resume a run that someone else has stopped or killed, such as a queue out of time."""

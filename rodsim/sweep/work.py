@@ -21,6 +21,7 @@ POLL_SECONDS = 0.2
 STOPPED = StoppedError.exit_code, ""
 _running: list[tuple[str, subprocess.Popen]] = []  # (sweep, its run), of this process
 _stopped: set[str] = set()  # sweeps that want no more runs
+_begun: set[tuple[str, str]] = set()  # (sweep, name of a run) that this process is at
 
 
 def command(run: Run, stands: str) -> list[str]:
@@ -37,12 +38,16 @@ def work(sweep: str, run: Run, threads: int | None) -> tuple[int, str]:
     another process does this run, a worker of another sweep or a command by hand, it is waited
     for, and what that has done is not done again.
     """
-    lock = NamedLock(run.lock)
-    run.folder.mkdir(parents=True, exist_ok=True)
+    if sweep in _stopped:
+        return STOPPED
+    lock, entry = NamedLock(run.lock), (sweep, run.name)
+    _begun.add(entry)
     try:
+        run.folder.mkdir(parents=True, exist_ok=True)
         ended = _wait_while(lock.take, sweep, run) or _work_alone(sweep, run, threads)
     finally:
         lock.release()
+        _begun.discard(entry)
     return ended
 
 
@@ -62,8 +67,10 @@ def _work_alone(sweep, run, threads):
             return code, said  # else someone was faster: that is waited for
 
 
-def stop(sweep: str) -> None:
+def stop(sweep: str) -> list[str]:
     """Ask the runs of a sweep that this process has started to stop where they are, each once.
+
+    Returns the names of the runs that it is still at; it begins no more of them.
 
     SIGTERM and not SIGINT: one that comes while a run is still starting ends it, too.
     """
@@ -71,6 +78,7 @@ def stop(sweep: str) -> None:
     for entry in [entry for entry in _running if entry[0] == sweep]:
         _running.remove(entry)
         entry[1].terminate()
+    return [name for of, name in list(_begun) if of == sweep]
 
 
 def _execute(sweep, run, line, threads):
