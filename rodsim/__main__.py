@@ -5,6 +5,7 @@ import os
 import sys
 
 from rodsim import cli
+from rodsim.streams import prepare_streams
 
 # Importing makes many objects and no garbage: looking for it after every 700, as Python does by
 # default, takes a tenth of the time to start.
@@ -18,12 +19,14 @@ def main():
     end the process in a crash that hides our message and exit code.
     """
     gc.set_threshold(OBJECTS_BETWEEN_COLLECTIONS)
+    prepare_streams()
     try:
         cli.main(prog_name="rodsim")
     except SystemExit as end:
         writer = sys.modules.get("rodsim.output.writer")
         if writer and writer.abandoned:
-            sys.stdout.flush()
+            if sys.stdout:
+                sys.stdout.flush()
             sys.stderr.flush()
             os._exit(end.code)
         raise

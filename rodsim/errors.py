@@ -84,7 +84,8 @@ class SweepError(RodsimError):
         kinds = {"failed": FileError, "diverged": DivergedError}
         worst = [kind for status, kind in kinds.items() if counts[status]] or [StoppedError]
         self.exit_code = worst[0].exit_code
-        order = ("finished", *kinds, "stopped", "waiting")
+        order = ("finished", *kinds, "stopped", "running", "waiting")
         text = ", ".join(f"{counts[status]} {status}" for status in order if counts[status])
-        on = "; the same command goes on" if counts["stopped"] + counts["waiting"] else ""
+        left = counts["stopped"] + counts["running"] + counts["waiting"]
+        on = "; the same command goes on" if left else ""
         super().__init__(text + on)

@@ -2,6 +2,7 @@
 
 import errno
 import os
+import secrets
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -36,8 +37,10 @@ def replacing(path):
     path = Path(path)
     if _is_output(path):
         raise FileError(f"{path}: is the output of a run, not replaced; give another name")
-    temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
+    temporary = path.with_name(f".{path.stem}.{secrets.token_hex(8)}{path.suffix}")
     try:
+        # Made here, so that a file or link that someone else has put there is never written to.
+        os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
         yield temporary
         os.replace(temporary, path)
     except OSError as error:

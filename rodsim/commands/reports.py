@@ -132,6 +132,21 @@ def _endings(run):
     return [text for text in sentences if text]
 
 
+def _inputs(run) -> list[str]:
+    """Return a line for each file the run began from: its digest, and whether it is the same."""
+    from rodsim.scene.inputs import look_again, stored_digests
+
+    stored = stored_digests(run.inputs)
+    try:
+        found = look_again(stored, run.case_data())
+    except (FileError, ValueError, KeyError, TypeError, AttributeError):
+        return []
+    return [
+        f"{key}: {file}, sha256 {stored[key]['sha256'][:16]}, {state}"
+        for key, (file, state) in found.items()
+    ]
+
+
 def describe_output(path) -> str:
     """Return what an output file holds and how its run ended."""
     from rodsim.output import open_trajectory
@@ -156,6 +171,7 @@ def describe_output(path) -> str:
             f"{key}: {value if isinstance(value, str) else format(value, '.6g')}"
             for key, value in run.runtime.items()
         ]
+        lines += _inputs(run)
         lines += [f"resumed {text}" for text in run.resumes]
         if run.overrides:
             lines.append("--set " + " --set ".join(run.overrides))

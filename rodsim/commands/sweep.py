@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from rodsim.commands.common import case_argument, prepare_numba, say, set_option
+from rodsim.commands.common import case_argument, prepare_numba, say, set_option, warn
 
 _FILE, _FOLDER = (click.Path(path_type=Path, dir_okay=d, file_okay=not d) for d in (False, True))
 
@@ -44,18 +44,21 @@ def sweep(case_path, overrides, table, folder, jobs, threads, scheduler, only_li
     what was stopped is resumed.
     """
     from rodsim.sweep.plan import make_plan
+    from rodsim.sweep.standing import DONE
     from rodsim.sweep.summary import Summary
-    from rodsim.sweep.work import DONE, command
+    from rodsim.sweep.work import command
 
     plan = make_plan(case_path, overrides, table, folder)
     summary = Summary(plan, period, reference)
     pictures = [(summary.column(x), summary.column(y), path) for x, y, path in plots]
     left = [run for run in plan.runs if summary.rows[run.name]["status"] not in DONE]
-    for run in left:
-        run.prepare()
+    _say_what_is_anew(left, summary)
     if only_list:
         for run in left:
-            click.echo(shlex.join(command(run, summary.rows[run.name]["status"])))
+            status = summary.rows[run.name]["status"]
+            if status != "running":
+                run.prepare()
+                click.echo(shlex.join(command(run, status)))
         return
     table_path = folder / "summary.csv"
     try:
@@ -72,6 +75,20 @@ def sweep(case_path, overrides, table, folder, jobs, threads, scheduler, only_li
     summary.check()
 
 
+def _say_what_is_anew(left, summary):
+    """Name what has changed since runs that are done again, and say what others are doing."""
+    from collections import Counter
+
+    from rodsim.sweep.standing import changed_inputs
+
+    changed = Counter(file for run in left for file in changed_inputs(run))
+    for file, count in changed.items():
+        warn(f"{file} has changed: {count} of the runs that began with it are run again")
+    running = sum(summary.rows[run.name]["status"] == "running" for run in left)
+    if running:
+        click.echo(f"{running} of the runs are being done by other processes", err=True)
+
+
 def _run(left, summary, table_path, options):
     """Start the engine and do what is left."""
     jobs, threads, scheduler, quiet = options
@@ -84,35 +101,42 @@ def _run(left, summary, table_path, options):
         _compile(left, quiet)
         jobs, threads = engine.share(len(left), jobs, threads)
         cluster = engine.local_cluster(jobs, threads)
-    with _signals_stop(), cluster as client, make_display(summary, quiet) as display:
+    with _signals() as heard, cluster as client, make_display(summary, quiet) as display:
 
         def ended(run, failure):
             display.ended(summary.update(run, failure))
-            summary.write(table_path)
+            summary.write_now_and_then(table_path)
 
-        engine.Sweep(client, threads, ended).finish(left, display)
+        sweep = engine.Sweep(client, threads, ended, summary.update, lambda: bool(heard))
+        sweep.finish(left, display)
 
 
 def _compile(left, quiet):
     """Compile once what the runs need, instead of in every one of them at the same time."""
     prepare_numba()
-    from rodsim.case import load_case
+    from rodsim.case import case_from_mapping
     from rodsim.errors import RodsimError
     from rodsim.run.warmup import ensure_compiled
     from rodsim.scene.build import build_scene
 
     for run in left:
         with suppress(RodsimError):  # which that run will report
-            scene = build_scene(load_case(run.case))
+            scene = build_scene(case_from_mapping(run.data))
             ensure_compiled(scene, lambda line: quiet or say(line))
 
 
 @contextmanager
-def _signals_stop():
-    """Let what ends a job from outside stop it as Ctrl-C does."""
+def _signals():
+    """Yield a list of the signals heard: whatever ends a job from outside stops it as Ctrl-C does.
 
-    def interrupt(*_):
-        raise KeyboardInterrupt
+    The second one does not wait: KeyboardInterrupt.
+    """
+    heard = []
+
+    def interrupt(number, _):
+        heard.append(number)
+        if len(heard) > 1:
+            raise KeyboardInterrupt
 
     numbers = [signal.SIGINT, signal.SIGTERM]
     hangup = getattr(signal, "SIGHUP", None)  # not everywhere; nohup has it ignored
@@ -120,7 +144,7 @@ def _signals_stop():
         numbers.append(hangup)
     before = {number: signal.signal(number, interrupt) for number in numbers}
     try:
-        yield
+        yield heard
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

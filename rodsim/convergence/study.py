@@ -8,9 +8,10 @@ from dataclasses import dataclass, field
 from rodsim.convergence import rows
 from rodsim.convergence.outcome import Errors, Outcome, compare, solve
 from rodsim.convergence.rows import Row
-from rodsim.errors import CaseError, DivergedError, UsageError
+from rodsim.errors import CaseError, DivergedError, FileError, UsageError
 from rodsim.integrators.limits import stability
 from rodsim.scene.build import build_scene
+from rodsim.scene.inputs import SAME, case_digests, compare_inputs
 from rodsim.scene.system import RodSystem
 
 REPEATS = 3
@@ -66,7 +67,7 @@ class Study:
     def __init__(self, load: Callable, axes, threads=None, progress=None):
         self.load, self.threads, self.progress = load, threads, progress
         self.case = load(())
-        self.scene = build_scene(self.case)
+        self.scene, self._inputs = build_scene(self.case), case_digests(self.case)
         self.limits = stability(RodSystem(self.scene))
         self.axes = [axis for axis in rows.AXES if axis in axes]
         self.sections: list[Section] = []
@@ -175,6 +176,7 @@ class Study:
         weight = self._weight(row)
         try:
             case = self.load((*rows.quiet(self.case), *row.overrides))
+            self._same_inputs(case)
             found = solve(
                 case,
                 self.threads,
@@ -188,6 +190,12 @@ class Study:
             found = f"{DIVERGED}: {str(error).splitlines()[0]}"
         self._done += weight
         return found
+
+    def _same_inputs(self, case):
+        """Raise FileError where a file that the case names is not what it was at the start."""
+        for file, state in compare_inputs(self._inputs, case_digests(case)).values():
+            if state != SAME:
+                raise FileError(f"{file}: {state}: the rows before are of another scene")
 
     def _tick(self, row, part):
         if self.progress:

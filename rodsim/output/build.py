@@ -67,7 +67,7 @@ def trim(file: h5py.File) -> None:
 
 
 def _room(plan):
-    texts = (plan.case.source, plan.case.resolved, *plan.case.overrides)
+    texts = (plan.case.source, plan.case.resolved, plan.case.inputs, *plan.case.overrides)
     count = plan.value_bytes() + FRAME_BYTES * len(plan.times) + 4 * sum(map(len, texts))
     count += 2 * sum(np.asarray(value).nbytes for value in plan.checkpoint.values())
     count += sum(array.nbytes for kept in plan.arrays.values() for array in kept.values())
@@ -121,6 +121,8 @@ def _add_case(group, plan):
     text, overrides = h5py.string_dtype(), plan.case.overrides
     group.create_dataset("source", data=plan.case.source, dtype=text)
     group.create_dataset("resolved", data=plan.case.resolved, dtype=text)
+    if plan.case.inputs:
+        group.create_dataset("inputs", data=plan.case.inputs, dtype=text)
     group.create_dataset("overrides", (len(overrides),), data=overrides, dtype=text)
     group["times"] = plan.times
     group["resumes"] = np.zeros(layout.MOST_RESUMES, dtype=f"S{layout.RESUME_BYTES}")

@@ -69,11 +69,15 @@ MACHINE = ("numba", "llvmlite", "numpy", "processor")
 
 @dataclass(frozen=True)
 class CaseText:
-    """What ``/case`` holds: source and resolved case as text, and the ``--set`` options."""
+    """What ``/case`` holds: source and resolved case as text, and the ``--set`` options.
+
+    ``inputs`` : digests of the files that the case names, as JSON; "" where it names none.
+    """
 
     source: str
     resolved: str
     overrides: list[str]
+    inputs: str = ""
 
 
 @dataclass(frozen=True)

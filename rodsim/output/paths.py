@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import glob
-import json
 import os
-import socket
+import secrets
 from pathlib import Path
 
+from rodsim import kernel_locks
 from rodsim.errors import FileError
+from rodsim.locks import Holder, NamedLock, holder
+
+
+def real_file(path: Path) -> Path:
+    """Return the file that a path stands for: where it is a link, what that leads to."""
+    return Path(os.path.realpath(path)) if os.path.islink(path) else Path(path)
 
 
 def free_name(path: Path) -> Path:
@@ -23,7 +29,7 @@ def temporary_name(path: Path) -> Path:
     """Return the name to build under; removes what killed builds left. The caller has the lock."""
     for leftover in path.parent.glob(f".{glob.escape(path.name)}.*.tmp"):
         leftover.unlink()
-    return path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    return path.with_name(f".{path.name}.{secrets.token_hex(8)}.tmp")
 
 
 def set_aside(path: Path) -> Path | None:
@@ -48,116 +54,65 @@ def take_place(built: Path, path: Path, overwrite: bool) -> Path | None:
 
 
 class OutputLock:
-    """A file ``<output>.lock`` that names the host and process writing the output.
+    """A lock on an output, under any name: ``<output>.lock`` beside the real file, and the file.
 
-    The lock of a process that has ended on this host is taken over. A process is recognised by
-    its number and, where /proc tells it, its start time: numbers are used again.
+    ``output`` is the name given, ``file`` the real one. The file itself is locked as well, where
+    that does not keep readers out, since a hard link is a name that cannot be told from the first.
     """
 
     def __init__(self, output: Path):
-        self.output = output
-        self.path = output.with_name(output.name + ".lock")
-        pid = os.getpid()
-        owner = {"host": socket.gethostname(), "pid": pid, "started": _process(pid)[1]}
-        self._text = json.dumps(owner)
+        self.output, self.file = Path(output), real_file(output)
+        self._named, self._handle = NamedLock(_lock_path(self.file)), None
+
+    @property
+    def path(self) -> Path:
+        """The file that says who has the lock."""
+        return self._named.path
 
     def acquire(self) -> None:
         """Take the lock; raises FileError that names who has it."""
         try:
-            if not self._create():
-                self._remove_stale()
-                if not self._create():
-                    raise FileError(f"{self.output}: another run has just started to write it")
+            found = self._named.take()
+            if found is None and not self._cover_if_there():
+                self._named.release()
+                found = Holder("another process, under another of its names", sure=True)
         except OSError as error:
             raise FileError(f"{self.output}: cannot be written: {error.strerror}") from error
+        if found:
+            advice = "" if found.sure else f"; if that has ended, remove {self.path}"
+            raise FileError(f"{self.output}: is being written by {found}{advice}")
+
+    def cover(self, file: Path) -> bool:
+        """Lock this file itself, and no longer that before; False if someone else has it."""
+        handle = os.open(file, os.O_RDWR)
+        if kernel_locks.grab_beside_readers(handle) is False:
+            os.close(handle)
+            return False
+        self._uncover()
+        self._handle = handle
+        return True
 
     def release(self) -> None:
         """Give the lock back, unless someone else has it by now."""
+        self._uncover()
+        self._named.release()
+
+    def _cover_if_there(self):
         try:
-            if self.path.read_text() == self._text:
-                self.path.unlink()
-        except (OSError, ValueError):
-            pass  # gone or not ours: nothing to give back
+            return not self.file.is_file() or self.cover(self.file)
+        except PermissionError:
+            return True  # not ours to write, so nobody like us writes it; it can still be renamed
 
-    def _create(self):
-        try:
-            handle = os.open(self.path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644)
-        except FileExistsError:
-            return False
-        with os.fdopen(handle, "w") as stream:
-            stream.write(self._text)
-        return True
-
-    def _remove_stale(self):
-        try:
-            found = self.path.read_text(errors="replace")
-        except FileNotFoundError:
-            return  # given back since
-        self._refuse_if_alive(found)
-        # Renaming can succeed for one process only, so two cannot both take over the same lock.
-        aside = self.path.with_name(f"{self.path.name}.{os.getpid()}")
-        try:
-            os.rename(self.path, aside)
-        except FileNotFoundError:
-            return
-        if aside.read_text(errors="replace") != found:  # taken over between our two looks
-            os.rename(aside, self.path)
-            return
-        aside.unlink()
-
-    def _refuse_if_alive(self, found):
-        try:
-            host, pid, started = _owner(found)
-        except ValueError:
-            raise FileError(
-                f"{self.output}: its lock cannot be read; if no run writes it, remove {self.path}"
-            ) from None
-        if not _is_alive(host, pid, started):
-            return
-        raise FileError(
-            f"{self.output}: is being written by process {pid} on {host}; "
-            f"if that has ended, remove {self.path}"
-        )
+    def _uncover(self):
+        handle, self._handle = self._handle, None
+        if handle is not None:
+            kernel_locks.let_go(handle)
 
 
-def writing_process(output: Path) -> str:
-    """Return ``process N on HOST`` of who is writing an output, empty if nobody is."""
-    lock = OutputLock(Path(output))
-    try:
-        owner = _owner(lock.path.read_text())
-    except (OSError, ValueError):
-        return ""
-    return f"process {owner[1]} on {owner[0]}" if _is_alive(*owner) else ""
+def writing_process(output: Path) -> Holder | None:
+    """Return who is writing an output, ``process N on HOST`` as text, or None if nobody is."""
+    return holder(_lock_path(real_file(output)))
 
 
-def _owner(text):
-    """Return host, number and start of the process that has written a lock; or ValueError."""
-    try:
-        owner = json.loads(text)
-        return str(owner["host"]), int(owner["pid"]), owner["started"]
-    except (KeyError, TypeError, RecursionError) as error:
-        raise ValueError("not a lock") from error
-
-
-def _is_alive(host, pid, started):
-    """Tell whether a process runs; of one on another host nothing is known: it may."""
-    if host != socket.gethostname():
-        return True
-    alive, since = _process(pid)
-    return alive and (None in (started, since) or started == since)
-
-
-def _process(pid):
-    """Return whether a process runs, and its start in clock ticks since boot where that is told."""
-    try:
-        state, *numbers = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-        return state not in "ZX", int(numbers[18])
-    except (OSError, ValueError, IndexError):
-        pass
-    try:
-        os.kill(pid, 0)
-    except (ProcessLookupError, OverflowError):
-        return False, None
-    except PermissionError:
-        pass
-    return True, None
+def _lock_path(file):
+    return file.with_name(file.name + ".lock")

@@ -36,6 +36,7 @@ class Trajectory:
     planned : times of all frames the run is to have.
     status : running, finished, stopped or diverged. version, created, format : of the file.
     case_source, case_resolved : text. overrides, resumes : lists of text.
+    inputs : digests of the files the case named, as JSON text, "" where it named none.
     units : names of the units of ``length``, ``mass``, ``time``. runtime : what the run has cost.
     """
 
@@ -124,9 +125,12 @@ class Trajectory:
         where = TRACERS if name == "tracers" else f"{group}/{name}"
         return self._file.attribute(f"{where}/value", "units", str)
 
-    def checkpoint(self) -> dict | None:
-        """Return the newest whole state of the run, or None if there is none."""
-        return read_checkpoint(self._file, self.frames)
+    def checkpoint(self, frames: int | None = None) -> dict | None:
+        """Return the newest whole state of the run, or None if there is none.
+
+        ``frames``: one that builds on no more frames than these.
+        """
+        return read_checkpoint(self._file, self.frames if frames is None else frames)
 
     def case_data(self) -> dict:
         """Return the resolved case as plain data; raises FileError where that cannot be read."""
@@ -158,6 +162,7 @@ class Trajectory:
         if self.status not in layout.STATUS:
             raise file.damaged(f"its status is {self.status!r}")
         self.case_source, self.case_resolved = file.text("case/source"), file.text("case/resolved")
+        self.inputs = file.text("case/inputs") if "inputs" in file.names("case") else ""
         self.overrides = file.texts("case/overrides")
         self.resumes = [text for text in file.texts("case/resumes") if text]
         self.units = {

@@ -11,6 +11,11 @@ BLOCK = 2**24  # bytes read at a time
 ORTHONORMAL = 1e-6  # of a triad; a run keeps them to rounding
 
 
+def whole_frames(run: Trajectory) -> int:
+    """Return how many frames, from the first, are whole, as ``verify`` means it."""
+    return min((first for first, _ in _damage(run)), default=run.frames)
+
+
 def verify(run: Trajectory) -> list[str]:
     """Return what is wrong with the frames of an open file; raises FileError where it is torn.
 
@@ -18,16 +23,22 @@ def verify(run: Trajectory) -> list[str]:
     decrease, triads are orthonormal, and a checkpoint is whole.
     """
     run.case_data()
-    found = []
-    if not np.array_equal(run.time, run.planned[: run.frames]):
-        found.append("the times of its frames are not those planned")
-    if (np.diff(run.steps) < 0).any() or (run.steps < 0).any():
-        found.append("the numbers of its steps decrease")
-    for name, read, size in _series(run):
-        found += _bad_frames(run, name, read, size)
+    found = [what for _, what in _damage(run)]
     if run.checkpoint() is None:
         found.append("neither of its checkpoints is whole: it cannot be resumed")
     return found
+
+
+def _damage(run):
+    """Yield (first frame, what) for everything that cannot be right."""
+    for bad, what in (
+        (run.time != run.planned[: run.frames], "the times of its frames are not those planned"),
+        (np.diff(run.steps, prepend=0) < 0, "the numbers of its steps decrease"),
+    ):
+        if bad.any():
+            yield int(bad.argmax()), what
+    for name, read, size in _series(run):
+        yield from _bad_frames(run, name, read, size)
 
 
 def _series(run):
@@ -40,7 +51,7 @@ def _series(run):
 
 
 def _bad_frames(run, name, read, size):
-    """Yield the first frame of a series that cannot be right, if there is one."""
+    """Yield (frame, what) of the first frame of a series that cannot be right."""
     rows = max(1, BLOCK // max(1, size))
     for first in range(0, run.frames, rows):
         values = read(name, slice(first, min(first + rows, run.frames)))
@@ -51,5 +62,6 @@ def _bad_frames(run, name, read, size):
                 worst = abs(product).reshape(len(values), -1).max(axis=1, initial=0.0)
             good &= worst < ORTHONORMAL
         if not good.all():
-            yield f"{name} in frame {first + int(good.argmin())} is damaged"
+            bad = first + int(good.argmin())
+            yield bad, f"{name} in frame {bad} is damaged"
             return

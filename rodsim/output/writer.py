@@ -15,7 +15,7 @@ from rodsim.output import build, layout
 from rodsim.output.build import abandoned, build_file, trim
 from rodsim.output.checkpoint import CheckpointWriter
 from rodsim.output.layout import CLOCK, Plan
-from rodsim.output.paths import OutputLock, take_place, temporary_name
+from rodsim.output.paths import OutputLock, real_file, take_place, temporary_name
 from rodsim.output.rows import Rows
 from rodsim.output.vtkhdf import View
 
@@ -62,8 +62,8 @@ class TrajectoryWriter:
             there before is then still there.
         """
         path = Path(path)
-        if not path.parent.is_dir():
-            raise FileError(f"{path}: there is no folder {path.parent}")
+        if not (folder := real_file(path).parent).is_dir():
+            raise FileError(f"{path}: there is no folder {folder}")
         if path.exists() and not path.is_file():
             raise FileError(f"{path}: exists and is not a file")
         named_so = path.suffix in (".h5", ".hdf5")
@@ -88,14 +88,15 @@ class TrajectoryWriter:
 
     @classmethod
     def _build(cls, path, plan, lock, overwrite, fill):
-        building = temporary_name(path)
+        building = temporary_name(lock.file)
         writer = cls(path, build_file(building, plan), plan, lock)
         try:
             writer.checkpoint(plan.checkpoint)
             if fill is not None:
                 fill(writer)
             writer.sync()
-            writer.renamed_to = take_place(building, path, overwrite)
+            lock.cover(building)
+            writer.renamed_to = take_place(building, lock.file, overwrite)
         except BaseException:
             if writer._file is not None:
                 writer._file.close()

@@ -18,7 +18,9 @@ from rodsim.errors import CaseError, FileError, Problem
 from rodsim.output import CaseText, Trajectory, open_trajectory
 from rodsim.output.paths import OutputLock
 from rodsim.output.reopen import extend, note_resume, reopen
+from rodsim.output.verify import whole_frames
 from rodsim.run.recorder import frame_times, plan_output
+from rodsim.scene.inputs import CHANGED, look_again, stored_digests
 from rodsim.scene.state import State
 
 ALLOWED = (
@@ -44,7 +46,11 @@ def open_past(path, overrides=()):
 
 @dataclass
 class Past:
-    """What an output says about its run. ``case`` has the changes that were asked for."""
+    """What an output says about its run. ``case`` has the changes that were asked for.
+
+    ``whole`` frames, from the first, are good; ``snapshot`` is of a time when there were no more,
+    so that those that are damaged are written again.
+    """
 
     path: Path
     run: Trajectory
@@ -53,12 +59,14 @@ class Past:
     overrides: tuple[str, ...]
     snapshot: dict
     changed: bool
+    whole: int
 
     @property
     def complete(self) -> bool:
         """Whether nothing is left to do."""
         run = self.run
-        return not self.changed and run.status == "finished" and run.frames == len(run.planned)
+        done = run.status == "finished" and run.frames == len(run.planned)
+        return not self.changed and done and self.whole == run.frames
 
     def warnings(self):
         """Yield what may keep the result from being that of an uninterrupted run, bit for bit."""
@@ -70,6 +78,14 @@ class Past:
             yield (
                 f"{self.path} was written with {was}, this is {now}: last digits can differ from "
                 "those of one run"
+            )
+        inputs = look_again(stored_digests(self.run.inputs), self.case.resolved())
+        for file in dict.fromkeys(file for file, state in inputs.values() if state == CHANGED):
+            yield f"{file} has changed since this run began; it goes on from what it began with"
+        if self.whole < self.run.frames:
+            yield (
+                f"{self.path}: frame {self.whole} is damaged; all from frame "
+                f"{self.snapshot['frames']} on are written again"
             )
 
     def arrays(self, name: str) -> dict:
@@ -92,6 +108,7 @@ class Past:
             run.case_source,
             json.dumps(self.case.resolved(), indent=1),
             [*run.overrides, *self.overrides],
+            run.inputs,
         )
         plan = plan_output(self.case, scene, self.snapshot)
         stored = tuple(series for series in plan.extra if series[0] in run.observables)
@@ -135,7 +152,13 @@ class Past:
 
 
 def _read(path, run, overrides, lock):
-    snapshot = run.checkpoint()
+    whole = whole_frames(run)
+    snapshot = run.checkpoint(whole)
+    if snapshot is None and whole < run.frames and run.checkpoint() is not None:
+        raise FileError(
+            f"{path}: damaged: frame {whole} is not whole, and no checkpoint is from before it: "
+            "run the case again"
+        )
     if snapshot is None or not {"time", "position", "director", "force"} <= snapshot.keys():
         raise FileError(f"{path}: damaged: neither of its checkpoints is whole")
     resolved = run.case_data()
@@ -148,7 +171,7 @@ def _read(path, run, overrides, lock):
     if problems:
         raise CaseError(problems)
     changed = case.resolved() != before.resolved()
-    return Past(path, run, lock, case, overrides, snapshot, changed)
+    return Past(path, run, lock, case, overrides, snapshot, changed, whole)
 
 
 def _forbidden(path, before, after):

@@ -9,6 +9,7 @@ from rodsim.errors import StepFailure
 from rodsim.output import CaseText, Plan
 from rodsim.output.writer import NotFinite
 from rodsim.run.ending import Motion
+from rodsim.scene.inputs import case_digests
 from rodsim.scene.series import extra_series
 
 SECONDS_BETWEEN_CHECKPOINTS = 60.0  # at most, if no frame comes
@@ -27,9 +28,14 @@ def frame_times(end: float, interval: float) -> np.ndarray:
 
 def plan_output(case, scene, checkpoint: dict) -> Plan:
     """Return what the output file of a run is made from, with room for every frame."""
-    source = case.source
+    source, inputs = case.source, case_digests(case)
     return Plan(
-        case=CaseText(source.text, json.dumps(case.resolved(), indent=1), list(source.overrides)),
+        case=CaseText(
+            source.text,
+            json.dumps(case.resolved(), indent=1),
+            list(source.overrides),
+            json.dumps(inputs, indent=1) if inputs else "",
+        ),
         rods=scene.rods,
         times=frame_times(case.time.end, case.interval),
         tracers=scene.initial.tracer.shape[1],

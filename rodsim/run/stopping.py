@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import re
 import signal
 import threading
 from time import monotonic
 
-SIGNALS = ("SIGINT", "SIGTERM", "SIGUSR1")  # what Ctrl-C, kill and batch systems send
+# What Ctrl-C, kill and batch systems send, and a terminal that is closed; not all are everywhere.
+SIGNALS = ("SIGINT", "SIGTERM", "SIGUSR1", "SIGHUP")
+STARTED_BY = "RODSIM_STARTED_BY"  # set for a run whose standard input ends with who started it
 _DURATION = re.compile(
     r"\s*(?:(?P<d>\d+(?:\.\d*)?)d)?\s*(?:(?P<h>\d+(?:\.\d*)?)h)?"
     r"\s*(?:(?P<m>\d+(?:\.\d*)?)m(?:in)?)?\s*(?:(?P<s>\d+(?:\.\d*)?)s?)?\s*"
@@ -25,6 +28,13 @@ def parse_duration(text: str) -> float:
     return seconds
 
 
+def signals() -> list[int]:
+    """Return the signals to stop for; nohup has SIGHUP ignored, and so it stays."""
+    found = [getattr(signal, name) for name in SIGNALS if hasattr(signal, name)]
+    hangup = getattr(signal, "SIGHUP", None)
+    return [n for n in found if n != hangup or signal.getsignal(n) != signal.SIG_IGN]
+
+
 class Stopper:
     """Says, between two steps, why the run is to stop. A context manager that hears signals.
 
@@ -39,10 +49,10 @@ class Stopper:
 
     def __enter__(self):
         if threading.current_thread() is threading.main_thread():
-            for name in SIGNALS:
-                number = getattr(signal, name, None)  # SIGUSR1 is not everywhere
-                if number is not None:
-                    self._before[number] = signal.signal(number, self._hear)
+            for number in signals():
+                self._before[number] = signal.signal(number, self._hear)
+        if starter := os.environ.get(STARTED_BY):
+            threading.Thread(target=self._outlive, args=(starter,), daemon=True).start()
         return self
 
     def __exit__(self, *error):
@@ -58,6 +68,12 @@ class Stopper:
         if not self.reason and self.deadline is not None and now + self._longest > self.deadline:
             self.reason = "the wall time given by --max-wall"
         return self.reason
+
+    def _outlive(self, starter):
+        """Wait for the end of who has started this run; then nobody wants it any more."""
+        while os.read(0, 1024):
+            pass
+        self.reason = self.reason or f"the end of {starter}"
 
     def _hear(self, number, frame):
         if self.reason and number == signal.SIGINT:

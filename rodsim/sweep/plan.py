@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import csv
-import hashlib
 import itertools
 import json
-import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -14,23 +11,31 @@ from typing import Any
 import yaml
 
 from rodsim.case import load_case
+from rodsim.case.inputs import input_entries
 from rodsim.case.scalars import plain_scalar
 from rodsim.case.words import shown
 from rodsim.case.yaml_text import parse
-from rodsim.errors import CaseError, FileError, Problem, UsageError
+from rodsim.errors import CaseError, FileError, UsageError
+from rodsim.files import replacing
+from rodsim.scene.inputs import digests
+from rodsim.sweep.names import folder_name, value_text
+from rodsim.sweep.table import read_table
 
 MOST_RUNS = 10_000
-LONGEST_NAME = 120  # of a folder
 OPTION = "--set"
 
 
 @dataclass(frozen=True)
 class Run:
-    """One run: ``values`` are what the sweep sets, ``data`` is the whole resolved case."""
+    """One run: ``values`` are what the sweep sets, ``data`` is the whole resolved case.
+
+    ``inputs`` : digests of the files that the case names.
+    """
 
     folder: Path
     values: dict[str, Any]
     data: dict[str, Any]
+    inputs: dict[str, dict[str, str]]
 
     @property
     def name(self) -> str:
@@ -52,15 +57,21 @@ class Run:
         """What the command has said."""
         return self.folder / "run.log"
 
+    @property
+    def lock(self) -> Path:
+        """The lock of whoever does this run."""
+        return self.folder / "run.lock"
+
     def prepare(self) -> None:
         """Make the folder and its case file; raises FileError."""
-        set_here = ", ".join(f"{key} = {_text(value)}" for key, value in self.values.items())
+        set_here = ", ".join(f"{key} = {value_text(v)}" for key, v in self.values.items())
         head = f"# One run of a sweep: {set_here or 'nothing set'}.\n"
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            self.case.write_text(head + _yaml(self.data), encoding="utf-8")
         except OSError as error:
             raise FileError(f"{self.case}: cannot be written: {error.strerror}") from error
+        with replacing(self.case) as temporary:
+            temporary.write_text(head + _yaml(self.data), encoding="utf-8")
 
 
 @dataclass(frozen=True)
@@ -78,9 +89,12 @@ def make_plan(case_path, settings, table, folder) -> Plan:
     of all runs, UsageError for a sweep without runs, with too many, or with the same one twice.
     """
     fixed, axes = _axes(settings)
-    rows = _read_table(table) if table else [("", {})]
-    if twice := sorted(set(axes) & {key for _, row in rows for key in row}):
+    rows = read_table(table) if table else [("", {})]
+    in_table = {key for _, row in rows for key in row}
+    if twice := sorted((set(axes) | _keys(fixed)) & in_table):
         raise UsageError(f"{twice[0]}: is set by --set and by {table}")
+    if twice := sorted(set(axes) & _keys(fixed)):
+        raise UsageError(f"--set {twice[0]}: has a value and a list of values")
     count = len(rows)
     for values in axes.values():
         count *= len(values)
@@ -95,7 +109,7 @@ def make_plan(case_path, settings, table, folder) -> Plan:
 
 def _load(case_path, fixed, axes, choices, folder):
     """Load the case of every choice, all problems at once."""
-    runs, units, problems = {}, {}, []
+    runs, units, problems, known = {}, {}, [], {}
     for where, values in choices:
         settings = [f"{key}={json.dumps(value)}" for key, value in values.items()]
         try:
@@ -106,13 +120,17 @@ def _load(case_path, fixed, axes, choices, folder):
             continue
         units |= {key: case.source.unit(tuple(key.split("."))) for key in values}
         values = {key: case.source.number(key, value) for key, value in values.items()}
-        name = _name(values)
+        name, data = folder_name(values), _self_contained(case)
         if name in runs:
             raise UsageError(f"the sweep has the run {name} twice")
-        runs[name] = Run(folder / name, values, _self_contained(case))
+        runs[name] = Run(folder / name, values, data, digests(data, folder, known))
     if problems:
         raise CaseError(list(dict.fromkeys(problems)))
     return Plan(list(runs.values()), units)
+
+
+def _keys(settings):
+    return {text.partition("=")[0].strip() for text in settings}
 
 
 def _at_row(problem, where, values):
@@ -145,59 +163,12 @@ def _axes(settings):
     return fixed, axes
 
 
-def _read_table(path):
-    """Return (file:line, values) of every row of a CSV file; an empty cell sets nothing."""
-    try:
-        text = Path(path).read_text(encoding="utf-8-sig")
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "not UTF-8 text"
-        raise CaseError([Problem(str(path), "", None, f"cannot read: {reason}")]) from None
-    lines = [
-        (f"{path}:{number}", next(csv.reader([line])))
-        for number, line in enumerate(text.splitlines(), 1)
-        if line.strip() and not line.startswith("#")
-    ]
-    if len(lines) < 2:
-        raise UsageError(f"{path}: needs a line of keys and at least one of values")
-    keys = [key.strip() for key in lines[0][1]]
-    rows = []
-    for where, cells in lines[1:]:
-        if len(cells) != len(keys):
-            reason = f"has {len(cells)} cells where the first line has {len(keys)} keys"
-            raise CaseError([Problem(where, "", None, reason)])
-        given = {key: cell for key, cell in zip(keys, cells, strict=True) if cell.strip()}
-        parsed = {k: parse(c, lambda line, at=where: at, (k,))[0] for k, c in given.items()}
-        rows.append((where, parsed))
-    return rows
-
-
-def _name(values):
-    """Return the folder's name: ``b=0.5_sigma=400``, as readable as the values allow."""
-    last = [key.rpartition(".")[2] for key in values]
-    words = [
-        f"{short if last.count(short) == 1 else key}={_text(value)}"
-        for short, (key, value) in zip(last, values.items(), strict=True)
-    ]
-    name = "_".join(words) or "run"
-    safe = re.sub(r"[^A-Za-z0-9.,=+_-]+", "-", name)[:LONGEST_NAME]
-    if safe == name:
-        return name
-    return f"{safe}-{hashlib.sha256(name.encode()).hexdigest()[:8]}"
-
-
-def _text(value):
-    if isinstance(value, list):
-        return ",".join(map(_text, value))
-    return value if isinstance(value, str) else json.dumps(value)
-
-
 def _self_contained(case):
     """Return the resolved case with files named so that they are found from any folder."""
     data = case.resolved()
     here = Path(case.source.path).parent
-    for rod in data["rods"].values():
-        if "path" in rod["shape"]:
-            rod["shape"]["path"] = str((here / rod["shape"]["path"]).resolve())
+    for _, entry, name in list(input_entries(data)):
+        entry[name] = str((here / entry[name]).resolve())
     return data
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import csv
 import json
-import os
 from collections import Counter
+from contextlib import suppress
 from dataclasses import dataclass, field
+from time import monotonic
 from typing import Any
 
 import numpy as np
@@ -15,9 +16,11 @@ from rodsim.analysis.energy import PARTS
 from rodsim.analysis.swimming import swimming_velocity
 from rodsim.case import Expression, ExpressionError
 from rodsim.errors import FileError, SweepError, UsageError
+from rodsim.files import replacing
 from rodsim.output import open_trajectory
 from rodsim.sweep.plan import Plan, Run
-from rodsim.sweep.work import standing
+from rodsim.sweep.standing import standing
+from rodsim.sweep.work import last_line
 from rodsim.units import unit_text
 
 VELOCITY, ENERGY = (0, 1, -1), (1, 2, -2)
@@ -32,6 +35,8 @@ RESULTS = {  # column -> dimension
     "wall_seconds": (0, 0, 0),
     "message": (0, 0, 0),
 }
+SECONDS_BETWEEN_TABLES = 1.0
+FORMULA = ("=", "+", "-", "@", "\t", "\r")  # what a spreadsheet takes a text for that begins so
 SHOWN = ("status", "time", "speed", "elastic_energy", "error", "wall_seconds")  # on the terminal
 
 
@@ -50,6 +55,7 @@ class Summary:
     rows: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     def __post_init__(self):
+        self._next = 0.0
         self._reference = _last_frame(self.reference) if self.reference else None
         for run in self.plan.runs:
             _period(self.period, run)  # a wrong expression shows before the runs, not after
@@ -78,7 +84,7 @@ class Summary:
         """Read a run anew; ``failure`` is why its command could not do it. Returns its row."""
         status = standing(run)
         row = {"run": run.name, **run.values, "status": "failed" if failure else status}
-        if status != "waiting":
+        if status not in ("waiting", "running"):  # of what goes on the numbers are half-way
             row |= self._results(run)
         if failure or status == "diverged":
             row["message"] = failure or last_line(run.log, "diverged in step")
@@ -136,16 +142,24 @@ class Summary:
 
     def write(self, path) -> None:
         """Write the table as CSV, whole or not at all."""
-        partial = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-        try:
-            with partial.open("w", newline="", encoding="utf-8") as stream:
-                out = csv.writer(stream)
-                out.writerow([self.head(column) for column in self.columns])
-                for row in self.rows.values():
-                    out.writerow([_cell(row.get(column, "")) for column in self.columns])
-            os.replace(partial, path)
-        except OSError as error:
-            raise FileError(f"{path}: cannot be written: {error.strerror}") from error
+        with (
+            replacing(path) as temporary,
+            open(temporary, "w", newline="", encoding="utf-8") as out,
+        ):
+            table = csv.writer(out)
+            table.writerow([_harmless(self.head(column)) for column in self.columns])
+            for row in self.rows.values():
+                table.writerow([_harmless(_cell(row.get(column, ""))) for column in self.columns])
+
+    def write_now_and_then(self, path) -> None:
+        """Write the table unless it was written a moment ago: all of it at every end is N squared.
+
+        One that cannot be written is none of the runs' concern; the last one will tell.
+        """
+        if monotonic() >= self._next:
+            with suppress(FileError):
+                self.write(path)
+            self._next = monotonic() + SECONDS_BETWEEN_TABLES
 
     def text(self) -> str:
         """Return the most important columns as aligned text."""
@@ -194,19 +208,23 @@ def _last_frame(path):
         return float(output.time[-1]), output.read("position", -1)
 
 
-def last_line(log, start: str = "") -> str:
-    """Return the last line of a log that is not empty and begins so, or nothing."""
-    try:
-        lines = log.read_text(encoding="utf-8", errors="replace").split("\n")
-    except OSError:
-        return ""
-    return next((line for line in reversed(lines) if line.strip() and line.startswith(start)), "")
-
-
 def _cell(value):
     if isinstance(value, float):
         return repr(value)
     return value if isinstance(value, str | int) else json.dumps(value)
+
+
+def _harmless(cell):
+    """Return a cell that no spreadsheet runs as a formula: a text, with a quote before it."""
+    formula = isinstance(cell, str) and cell.startswith(FORMULA) and not _is_number(cell)
+    return f"'{cell}" if formula else cell
+
+
+def _is_number(text):
+    try:
+        return bool(float(text) or True)
+    except ValueError:
+        return False
 
 
 def _plain(value):

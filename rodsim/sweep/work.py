@@ -5,60 +5,72 @@ from __future__ import annotations
 import os
 import shlex
 import subprocess
+from contextlib import suppress
 from time import monotonic, sleep
 
 from rodsim.errors import FileError, StoppedError
+from rodsim.locks import NamedLock
+from rodsim.output.paths import writing_process
 from rodsim.processes import this_rodsim
+from rodsim.run.stopping import STARTED_BY
 from rodsim.sweep.plan import Run
+from rodsim.sweep.standing import DONE, standing
 
-DONE = ("finished", "diverged")
-PATIENCE = 180.0  # s without a write after which whoever has an output is taken for gone
+PATIENCE = 180.0  # s without a write after which one who may have gone is taken for gone
+POLL_SECONDS = 0.2
+STOPPED = StoppedError.exit_code, ""
 _running: list[tuple[str, subprocess.Popen]] = []  # (sweep, its run), of this process
 _stopped: set[str] = set()  # sweeps that want no more runs
-
-
-def standing(run: Run) -> str:
-    """Return ``finished``, ``diverged``, ``stopped`` (can be resumed) or ``waiting``.
-
-    Read from the output file, which counts only if its resolved case is that of the run.
-    """
-    from rodsim.output import open_trajectory
-
-    try:
-        with open_trajectory(run.output) as output:
-            if output.case_data() != run.data:
-                return "waiting"
-            if output.status in DONE:
-                return output.status
-            return "waiting" if output.checkpoint() is None else "stopped"
-    except (FileError, ValueError):
-        return "waiting"
+_begun: set[tuple[str, str]] = set()  # (sweep, name of a run) that this process is at
 
 
 def command(run: Run, stands: str) -> list[str]:
     """Return the command that does what is left of a run."""
-    if stands == "stopped":
+    if stands in ("stopped", "running"):
         return [*this_rodsim(), "resume", str(run.output)]
     return [*this_rodsim(), "run", str(run.case), "-o", str(run.output)]
 
 
-def work(sweep: str, run: Run, threads: int | None) -> int:
-    """Do a run from where it stands; return the exit code of its command.
+def work(sweep: str, run: Run, threads: int | None) -> tuple[int, str]:
+    """Do a run from where it stands; return the exit code of its command and its last line.
 
-    Whatever happened to an earlier call for the same run, this one goes on from its file. If the
-    command that call had started still lives, it is left to end.
+    Whatever happened to an earlier call for the same run, this one goes on from its file. While
+    another process does this run, a worker of another sweep or a command by hand, it is waited
+    for, and what that has done is not done again.
     """
-    _wait_until_free(run.output)
-    stands = standing(run)
-    if stands in DONE:
-        return 0
     if sweep in _stopped:
-        return StoppedError.exit_code
-    return _execute(sweep, run, command(run, stands), threads)
+        return STOPPED
+    lock, entry = NamedLock(run.lock), (sweep, run.name)
+    _begun.add(entry)
+    try:
+        run.folder.mkdir(parents=True, exist_ok=True)
+        ended = _wait_while(lock.take, sweep, run) or _work_alone(sweep, run, threads)
+    finally:
+        lock.release()
+        _begun.discard(entry)
+    return ended
 
 
-def stop(sweep: str) -> None:
+def _work_alone(sweep, run, threads):
+    while True:
+        ended = _wait_while(lambda: writing_process(run.output), sweep, run)
+        if ended:
+            return ended
+        stands = standing(run)
+        if stands in DONE:
+            return 0, ""
+        if sweep in _stopped:
+            return STOPPED
+        run.prepare()  # another sweep in this folder may have had another case
+        code, said = _execute(sweep, run, command(run, stands), threads)
+        if code != FileError.exit_code or not writing_process(run.output):
+            return code, said  # else someone was faster: that is waited for
+
+
+def stop(sweep: str) -> list[str]:
     """Ask the runs of a sweep that this process has started to stop where they are, each once.
+
+    Returns the names of the runs that it is still at; it begins no more of them.
 
     SIGTERM and not SIGINT: one that comes while a run is still starting ends it, too.
     """
@@ -66,37 +78,77 @@ def stop(sweep: str) -> None:
     for entry in [entry for entry in _running if entry[0] == sweep]:
         _running.remove(entry)
         entry[1].terminate()
+    return [name for of, name in list(_begun) if of == sweep]
 
 
 def _execute(sweep, run, line, threads):
     environment = {"NUMBA_NUM_THREADS": "1", **os.environ}  # a thread of Dask stands for a core
+    environment[STARTED_BY] = "the sweep that started it"
     if threads:
         environment["NUMBA_NUM_THREADS"] = str(threads)
-    with run.log.open("a", encoding="utf-8") as log:
-        log.write(f"$ {shlex.join(line)}\n")
-        log.flush()
+    with _log(run) as log:
+        begin = _size(log)
+        with suppress(OSError):  # a full disk: a log can be done without
+            os.write(log.fileno(), f"$ {shlex.join(line)}\n".encode())
         # A session of its own: Ctrl-C on the terminal reaches the sweep, which then stops the runs.
+        # Its standard input ends with this process, however that ends, and the run then stops.
         process = subprocess.Popen(
-            line, stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment,
+            line, stdin=subprocess.PIPE, stdout=log, stderr=log, env=environment,
             start_new_session=True,
         )  # fmt: skip
         _running.append((sweep, process))
         try:
-            return process.wait()
+            return process.wait(), last_line(run.log, since=begin)
         finally:
+            process.stdin.close()
             if (sweep, process) in _running:
                 _running.remove((sweep, process))
 
 
-def _wait_until_free(output):
-    """Wait while another process writes the output; give up on one that writes no more."""
-    from rodsim.output.paths import writing_process
+def _log(run):
+    try:
+        return run.log.open("ab", buffering=0)
+    except OSError:
+        return open(os.devnull, "ab", buffering=0)
 
+
+def _size(log):
+    return os.fstat(log.fileno()).st_size
+
+
+def _wait_while(look, sweep, run):
+    """Wait while ``look`` says that someone has it; return how the run ends if that is in vain.
+
+    The word of the system is believed. Whoever only may have it, on another machine, is given up
+    on where nothing is written any more.
+    """
     seen, since = None, monotonic()
-    while writing_process(output):
-        now = output.stat().st_mtime if output.exists() else None
+    while found := look():
+        if sweep in _stopped:
+            return STOPPED
+        now = run.output.stat().st_mtime if run.output.exists() else None
         if now != seen:
             seen, since = now, monotonic()
-        if monotonic() - since > PATIENCE:
-            return  # the command will say who has it
-        sleep(0.2)
+        if not found.sure and monotonic() - since > PATIENCE:
+            return FileError.exit_code, _in_vain(run, found)
+        sleep(POLL_SECONDS)
+    return None
+
+
+def _in_vain(run, found):
+    locks = [str(run.lock), f"{run.output}.lock"]
+    return f"is being done by {found}; if that has ended, remove {' and '.join(locks)}"
+
+
+def last_line(log, start: str = "", since: int = 0) -> str:
+    """Return the last line of a log that is not empty and begins so, or nothing.
+
+    ``since`` : bytes of the log that are of earlier commands.
+    """
+    try:
+        with log.open("rb") as stream:
+            stream.seek(since)
+            lines = stream.read().decode(errors="replace").split("\n")
+    except OSError:
+        return ""
+    return next((line for line in reversed(lines) if line.strip() and line.startswith(start)), "")

@@ -294,7 +294,7 @@ def test_the_command_goes_on_and_says_so(tmp_path):
     assert sorted(os.listdir(tmp_path)) == ["case.yaml", "out.h5", "whole.h5"]
 
 
-@pytest.mark.parametrize("name", ["SIGTERM", "SIGINT", "SIGUSR1"])
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGINT", "SIGUSR1", "SIGHUP"])
 def test_a_signal_stops_after_the_step(tmp_path, name):
     """The signal comes in the middle of a run of a process of its own, sent by itself."""
     simulate(make(tmp_path, DRIVEN), tmp_path / "whole.h5")
@@ -347,16 +347,15 @@ STORED = {"numba": b"0.1", "processor": b"z80 00000000"}
 
 @pytest.mark.parametrize("changed", [{}, *({name: text} for name, text in STORED.items()), STORED])
 def test_another_machine_or_other_versions_are_warned_of_once(tmp_path, changed):
-    path, listener = tmp_path / "out.h5", after(3)
-    listener.warn = (said := []).append
+    path, said = tmp_path / "out.h5", []
     with suppress(StoppedError):
         simulate(make(tmp_path, PLANAR), path, stop=after(4))
     with h5py.File(path, "r+") as file:
         for name, text in changed.items():
             file["runtime"].attrs.modify(name, np.bytes_(text))
     with suppress(StoppedError):
-        resume(path, listener=listener)
-    resume(path, listener=listener)
+        resume(path, stop=after(3), notify=said.append)
+    resume(path, notify=said.append)
     here = machine()
     was = ", ".join(f"{name} {text.decode()}" for name, text in changed.items())
     now = ", ".join(f"{name} {here[name]}" for name in changed)
@@ -386,3 +385,74 @@ def test_a_file_that_was_repacked_says_how_it_goes_on(tmp_path, layout):
     with pytest.raises(FileError, match=r"laid out anew .* a later --set time.end="):
         resume(packed)
     assert resume(packed, overrides=["time.end=1.2e-2"]).status == "finished"
+
+
+def test_nohup_stays_deaf_to_the_end_of_its_terminal(monkeypatch):
+    from rodsim.run.stopping import signals
+
+    assert signal.SIGHUP in signals()
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        assert signal.SIGHUP not in signals()
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
+# What a run goes on from -------------------------------------------------------------------------
+
+
+def spoil(path, frame, where="particles/trajectory/position/value"):
+    """Damage a committed frame, as a second writer or a power cut does."""
+    with h5py.File(path, "r+") as file:
+        file[where][frame, 3, 1] = np.nan
+
+
+@pytest.fixture
+def stopped(tmp_path):
+    """An output that was stopped after some frames, and that of a whole run."""
+    case = make(tmp_path, PLANAR)
+    simulate(case, tmp_path / "whole.h5")
+    path = tmp_path / "out.h5"
+    with suppress(StoppedError):
+        simulate(case, path, stop=lambda: "enough" if open_trajectory(path).frames > 7 else "")
+    return path
+
+
+def test_frames_after_a_checkpoint_are_mended(stopped):
+    """The newest checkpoint builds on the frame that is damaged; the one before does not."""
+    with open_trajectory(stopped) as run:
+        last = run.frames - 1
+        assert run.checkpoint()["frames"] == last + 1
+        assert run.checkpoint(last)["frames"] <= last
+    spoil(stopped, last)
+    with pytest.warns(UserWarning, match=f"frame {last} is damaged; all from frame .* again"):
+        resume(stopped)
+    assert differences(stopped, stopped.parent / "whole.h5") == []
+
+
+def test_a_frame_that_no_checkpoint_comes_before_is_refused(stopped):
+    spoil(stopped, 2)
+    refused = call("resume", stopped)
+    assert refused.exit_code == 4
+    assert f"{stopped}: damaged: frame 2 is not whole" in refused.stderr
+
+
+def test_a_finished_run_with_a_damaged_frame_is_not_finished(stopped):
+    path = stopped.parent / "whole.h5"
+    assert "is finished" in call("resume", path).stderr
+    spoil(path, 4)
+    refused = call("resume", path)
+    assert refused.exit_code == 4
+    assert "frame 4 is not whole" in refused.stderr
+
+
+def test_resume_goes_through_a_link_and_leaves_it(stopped):
+    (stopped.parent / "sub").mkdir()
+    link = stopped.parent / "sub" / "link.h5"
+    link.symlink_to("../out.h5")
+    resume(link, overrides=["time.end=1.2e-2"])
+    assert link.is_symlink()
+    assert not stopped.is_symlink()
+    with open_trajectory(stopped) as run:
+        assert (run.status, run.time[-1]) == ("finished", 1.2e-2)
+    assert os.listdir(stopped.parent / "sub") == ["link.h5"]

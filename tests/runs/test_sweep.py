@@ -11,6 +11,7 @@ import sys
 import threading
 import time
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,14 +19,17 @@ import pytest
 from click.testing import CliRunner
 from scenes import CONFIGS
 
-from rodsim import open_trajectory
+from rodsim import open_trajectory, simulate
 from rodsim.case import load_case
 from rodsim.cli import main
 from rodsim.errors import CaseError, UsageError
-from rodsim.output.paths import OutputLock
-from rodsim.sweep.plan import make_plan
+from rodsim.output.paths import OutputLock, writing_process
+from rodsim.sweep.names import folder_name
+from rodsim.sweep.plan import Plan, make_plan
+from rodsim.sweep.standing import standing
 from rodsim.sweep.summary import Summary
-from rodsim.sweep.work import command, standing, work
+from rodsim.sweep.table import read_table
+from rodsim.sweep.work import command, work
 
 RING = str(CONFIGS / "closed_ring.yaml")
 SHORT = ("--set", "rods.ring.shape.points=40", "--set", "time.end=2e-3")
@@ -131,6 +135,51 @@ def test_a_table_has_a_run_per_row_and_meets_the_lists(here):
     assert seen == [(2e-6, 0.02)] * 2 + [(1e-6, 0.03)] * 2
 
 
+def test_only_line_ends_end_a_row(here):
+    """Python's splitlines also takes form feeds and Unicode's separators for one."""
+    head = "time.end,title\r\n"
+    (here / "t.csv").write_bytes(f'{head}0.02,"a\u2028b"\r\n0.03,"x, y"\r\n'.encode())
+    assert [where for where, _ in read_table("t.csv")] == ["t.csv:2", "t.csv:3"]
+    assert read_table("t.csv")[1][1] == {"time.end": 0.03, "title": "x, y"}
+    (here / "t.csv").write_text(f'{head}0.02,"a\x0cb"\n0.03,x\n')
+    with pytest.raises(CaseError, match=r"t\.csv:2: title: .*U\+000C is not allowed"):
+        read_table("t.csv")
+
+
+def test_folders_are_apart_on_disks_that_do_not_tell_capitals():
+    names = [folder_name({"title": text}) for text in ("a", "A", "aB", "Ab")]
+    assert names[0] == "title=a"
+    assert len({name.lower() for name in names}) == 4
+
+
+def test_the_same_value_has_the_same_folder_however_it_is_written():
+    for one, other in ((400, 400.0), ([1, 0.5], [1.0, 0.5]), ({"spacings": 4}, {"spacings": 4.0})):
+        assert folder_name({"x.y": one}) == folder_name({"x.y": other})
+    assert len({folder_name({"b": value}) for value in (1, 1.5, "1 ", True, 2.0**80, -1)}) == 6
+
+
+def test_a_spreadsheet_runs_nothing_of_a_table(here):
+    values = {"title": "=HYPERLINK(1)", "a": "@x", "b": "+x", "c": "-x", "d": "-1.5", "e": -2.5}
+    run = replace(one(), values=values)
+    summary = Summary(Plan([run], dict.fromkeys(values, "")))
+    summary.write(here / "summary.csv")
+    row = rows("summary.csv")[0]
+    assert [row[key] for key in values] == ["'=HYPERLINK(1)", "'@x", "'+x", "'-x", "-1.5", "-2.5"]
+    assert "'" not in summary.text()
+
+
+def test_the_table_is_not_written_at_every_end(here, monkeypatch):
+    """A thousand runs that are stopped together would write a million rows."""
+    run = one()
+    summary, written = Summary(Plan([run], {})), []
+    monkeypatch.setattr(summary, "write", written.append)
+    now = iter([10.0, 10.0, 10.5, 11.5, 11.5])
+    monkeypatch.setattr("rodsim.sweep.summary.monotonic", lambda: next(now))
+    for _ in range(3):
+        summary.write_now_and_then("table")
+    assert len(written) == 2
+
+
 @pytest.mark.parametrize(
     ("settings", "table", "error", "words"),
     [
@@ -146,6 +195,13 @@ def test_a_table_has_a_run_per_row_and_meets_the_lists(here):
         ([], "time.end\n0.02\n-3\n", CaseError, "t.csv:3: time.end = -3: must be > 0"),
         ([], "time.end\n0.02,4\n", CaseError, "t.csv:2: has 2 cells where"),
         ([], "time.end\n", UsageError, "at least one of values"),
+        (["time.end=[1, 1.0]"], None, UsageError, "the sweep has the run end=1 twice"),
+        ([], "time.end\n1\n1.00\n", UsageError, "the sweep has the run end=1 twice"),
+        ([], "# three\nfluid.viscosity,time.end, fluid.viscosity\n1e-6,1e-4,2e-6\n", CaseError,
+         "t.csv:2: fluid.viscosity: two columns have it: column 1, column 3"),
+        (["time.end=0.03"], "time.end\n0.02\n", UsageError, "set by --set and by t.csv"),
+        (["time.end=0.03", "time.end=[0.02]"], None, UsageError, "a value and a list of values"),
+        ([], 'time.end\n"0.02\n', CaseError, "t.csv:2: is not CSV: unexpected end"),
         (["time.end=[0.03]"], "time.end\n0.02\n", UsageError, "set by --set and by t.csv"),
     ],
 )  # fmt: skip
@@ -181,13 +237,13 @@ def one(settings=()):
 def test_only_the_same_case_counts(here):
     run = one()
     assert standing(run) == "waiting"
-    assert work("token", run, None) == 0
+    assert work("token", run, None)[0] == 0
     assert standing(run) == "finished"
     assert command(run, "stopped")[-2:] == ["resume", str(run.output)]
     other = one(["time.tolerance=1e-5"])
     assert other.folder == run.folder
     assert standing(other) == "waiting"
-    assert work("token", other, None) == 0  # what was there is renamed, not lost
+    assert work("token", other, None)[0] == 0  # what was there is renamed, not lost
     assert standing(other) == "finished"
     shutil.move(other.folder / "out.1.h5", run.output)
     assert standing(run) == "finished"
@@ -196,18 +252,58 @@ def test_only_the_same_case_counts(here):
 
 
 def test_an_output_that_is_being_written_is_waited_for(here, monkeypatch):
-    """As after a worker was killed and its run was not; not for ever where nothing is written."""
+    """As after a worker was killed and its run was not: for ever, if the system says it lives."""
     run = one()
     lock = OutputLock(run.output)
     lock.acquire()
-    monkeypatch.setattr("rodsim.sweep.work.PATIENCE", 0.3)
-    assert work("token", run, None) == 4
-    assert f"is being written by process {os.getpid()}" in run.log.read_text()
-    monkeypatch.undo()
-    monkeypatch.chdir(here)
+    monkeypatch.setattr("rodsim.sweep.work.PATIENCE", 0.0)
     threading.Timer(1.0, lock.release).start()
-    assert work("token", run, None) == 0
+    assert work("token", run, None)[0] == 0
     assert standing(run) == "finished"
+
+
+def test_a_machine_that_may_have_vanished_is_waited_for_a_while(here, monkeypatch):
+    run = one()
+    lock = run.output.with_name("out.h5.lock")
+    lock.write_text('{"host": "elsewhere", "boot": "another machine", "pid": 4}')
+    monkeypatch.setattr("rodsim.sweep.work.PATIENCE", 0.3)
+    code, said = work("token", run, None)
+    assert code == 4
+    assert "is being done by process 4 on elsewhere" in said
+    assert f"remove {run.lock} and {lock}" in said
+
+
+def test_a_run_that_another_worker_does_is_not_done_again(here):
+    """Two sweeps in one folder: whoever comes second finds it finished."""
+    run = one()
+    codes = []
+    others = [
+        threading.Thread(target=lambda s=sweep: codes.append(work(s, run, None)[0]))
+        for sweep in ("one", "other")
+    ]
+    for thread in others:
+        thread.start()
+    for thread in others:
+        thread.join()
+    assert codes == [0, 0]
+    assert run.log.read_text().count("$ ") == 1
+    assert sorted(os.listdir(run.folder)) == ["case.yaml", "out.h5", "run.log"]
+
+
+def test_a_run_under_way_has_no_numbers(here):
+    """Half-way ones would be taken for results."""
+    run = one()
+    case = load_case(run.case)
+    seen = []
+
+    def look():
+        if not seen:
+            seen.append(dict(Summary(Plan([run], {})).rows[run.name]))
+        return ""
+
+    simulate(case, run.output, stop=look)
+    assert seen == [{"run": run.name, **run.values, "status": "running"}]
+    assert Summary(Plan([run], {})).rows[run.name]["elastic_energy"] > 0.0
 
 
 def test_list_prints_what_is_left_and_a_shell_can_run_it(here):
@@ -385,6 +481,54 @@ def test_ctrl_c_stops_the_runs_and_the_same_command_goes_on(here):
     lines = call(*arguments, "--list").stdout.splitlines()
     assert sum(" resume " in line for line in lines) == 2
     assert sum(" run " in line for line in lines) == 1
+
+
+@pytest.mark.compiled
+def test_runs_end_with_a_sweep_that_is_killed(here):
+    arguments = ["sweep", RING, "--set", "rods.ring.shape.points=[60, 64]",
+                 "--set", "time.tolerance=1e-11", "-j", "2"]  # fmt: skip
+    with subprocess.Popen(
+        [sys.executable, "-m", "rodsim", *arguments],
+        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+    ) as sweep:  # fmt: skip
+        wait_for(lambda: len(list(here.glob("sweep/*/out.h5"))) == 2, 120)
+        sweep.kill()
+    outputs = list(here.glob("sweep/*/out.h5"))
+    wait_for(lambda: not any(writing_process(path) for path in outputs))
+    for path in outputs:
+        with open_trajectory(path) as run:
+            assert run.status == "stopped"
+        assert "stopped by the end of the sweep" in (path.parent / "run.log").read_text()
+
+
+@pytest.mark.compiled
+def test_a_scheduler_that_dies_is_told_in_a_line(here):
+    slow = ("--set", "rods.ring.shape.points=[60, 64, 68]", "--set", "time.tolerance=1e-11")
+    with real_cluster(here) as (address, workers):
+        line = [sys.executable, "-m", "rodsim", "sweep", RING, *slow, "--scheduler", address]
+        with subprocess.Popen(
+            line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        ) as sweep:
+            wait_for(lambda: sweep.poll() is not None or all(map(well_begun, workers)), 300)
+            assert sweep.poll() is None
+            scheduler_of(workers).kill()
+            _, said = sweep.communicate(timeout=120)
+    assert sweep.returncode == 75
+    assert said == "the scheduler is gone; on another one the same command goes on\n"
+    states = sorted(row["status"] for row in rows())
+    assert states[-1] == "waiting"
+    assert set(states[:2]) <= {"running", "stopped"}
+
+
+def scheduler_of(workers):
+    import psutil
+
+    for process in psutil.Process().children():
+        if process.pid not in [w.pid for w in workers] and "dask_scheduler" in str(
+            process.cmdline()
+        ):
+            return process
+    raise AssertionError("no scheduler")
 
 
 @pytest.mark.long
