@@ -88,8 +88,10 @@ def in_range(number: float) -> float:
 
 
 def positive(value: Any) -> Any:
-    """Return a modulus; raise ValueError if it is a number that is not > 0. Others are checked
-    where they are computed."""
+    """Return a modulus; raise ValueError if it is a number that is not > 0.
+
+    Expressions are checked where they are computed.
+    """
     if isinstance(value, Expression):
         return value
     if not value > 0.0:
@@ -162,11 +164,6 @@ def tag_of(value: Any) -> str:
     return "<text>" if isinstance(value, str) else "<number>"
 
 
-def pair_tag(value: Any) -> str:
-    """Like ``tag_of``, for unions of one entry, number or text, and a list of them."""
-    return "<list>" if isinstance(value, list | tuple) else "<number>"
-
-
 def text_tag(value: Any) -> str:
     """Like ``tag_of``, for unions of a text and a list."""
     return "<text>" if isinstance(value, str) else "<list>"
@@ -193,8 +190,14 @@ Column = Annotated[
     | Annotated[str, Field(min_length=1), Tag("<text>")],
     Discriminator(tag_of),
 ]
-Modulus = Annotated[number_or(expression_in("s")), AfterValidator(positive)]
+ModulusText = Annotated[expression_in("s"), AfterValidator(positive)]
+Modulus = Annotated[
+    Annotated[Positive, Tag("<number>")] | Annotated[ModulusText, Tag("<text>")],
+    Discriminator(tag_of),
+]
 ModulusOrPair = Annotated[
-    Annotated[Modulus, Tag("<number>")] | Annotated[tuple[Modulus, Modulus], Tag("<list>")],
-    Discriminator(pair_tag),
+    Annotated[Positive, Tag("<number>")]
+    | Annotated[ModulusText, Tag("<text>")]
+    | Annotated[tuple[Modulus, Modulus], Tag("<list>")],
+    Discriminator(tag_of),
 ]

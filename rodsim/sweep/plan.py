@@ -142,7 +142,8 @@ def _at_row(problem, where, values):
 def _one_bracket(problem, axes):
     """Return a problem that tells of the second bracket, where a list's entries became runs."""
     values = axes.get(problem.key)
-    if values is None or problem.where != OPTION or not problem.reason.startswith("must be a list"):
+    wants_a_list = problem.reason.startswith("must be") and "a list of" in problem.reason
+    if values is None or problem.where != OPTION or not wants_a_list:
         return problem
     advice = f"one run for each entry, and none is a list: write [{shown(values)}] for one value"
     return replace(problem, value=shown(values), reason=f"{advice} that is this list")

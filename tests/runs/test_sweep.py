@@ -491,7 +491,7 @@ def test_runs_end_with_a_sweep_that_is_killed(here):
         [sys.executable, "-m", "rodsim", *arguments],
         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
     ) as sweep:  # fmt: skip
-        wait_for(lambda: len(list(here.glob("sweep/*/out.h5"))) == 2, 120)
+        wait_for(lambda: len(list(here.glob("sweep/*/out.h5"))) == 2)
         sweep.kill()
     outputs = list(here.glob("sweep/*/out.h5"))
     wait_for(lambda: not any(writing_process(path) for path in outputs))
@@ -509,7 +509,7 @@ def test_a_scheduler_that_dies_is_told_in_a_line(here):
         with subprocess.Popen(
             line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         ) as sweep:
-            wait_for(lambda: sweep.poll() is not None or all(map(well_begun, workers)), 300)
+            wait_for(lambda: sweep.poll() is not None or all(map(well_begun, workers)))
             assert sweep.poll() is None
             scheduler_of(workers).kill()
             _, said = sweep.communicate(timeout=120)
