@@ -31,8 +31,9 @@ class Kind:
     ask for it. Raises CaseError.
     word : its key in the case file, in the section ``where`` (Case, Fluid or Rod). words : the type
     of what stands there. dimension, about : of the schema.
-    check : called with a case, sections of which may be None, yields (path, reason) of what is
-    wrong across sections.
+    check : called with a case, sections of which may be None, and the names of all rods of the
+    file, also of those that did not validate; yields (path, reason) of what is wrong across
+    sections.
     """
 
     build: Callable
