@@ -34,12 +34,15 @@ SECTIONS = {
     "Spacings": "fluid.epsilon as a mapping",
     "Rod": "rods.NAME",
     "Moduli": "rods.NAME.moduli",
+    "Load": "rods.NAME.loads.NAME",
     "Straight": "rods.NAME.shape, kind: straight",
     "Ring": "rods.NAME.shape, kind: ring",
     "Helix": "rods.NAME.shape, kind: helix",
     "Sine": "rods.NAME.shape, kind: sine",
     "FileShape": "rods.NAME.shape, kind: file",
     "Rotate": "rods.NAME.shape.rotate",
+    "Tether": "tethers.NAME",
+    "OnRod": "an end of a tether on a rod",
     "Tube": "tracers.NAME as a mapping",
     "Time": "time",
     "Output": "output",
@@ -47,8 +50,9 @@ SECTIONS = {
 LAST = ("rotate", "origin")  # keys that all shapes share
 TAIL = """## Expressions
 
-The entries of `strain_twist` are numbers, or expressions in the arc length `s`, the time `t`, `pi`
-and the names in `parameters`, with `+ - * / ** %`, the comparisons `< <= > >=` and the functions
+The entries of `strain_twist`, and of forces and torques in `loads`, are numbers, or expressions in
+the arc length `s`, the time `t`, `pi` and the names in `parameters`, those of `fluid.flow` in `x`,
+`y`, `z`, `t`, `pi` and those names, with `+ - * / ** %`, the comparisons `< <= > >=` and the functions
 {functions};
 `where(condition, a, b)` chooses. The first point of a rod is at s = 0; strain twist is taken at the
 middle of each segment. Nothing in a case file can run code.

@@ -49,7 +49,19 @@ class Kind:
 def kinds() -> tuple[Kind, ...]:
     """Return all kinds, the user's own last."""
     own = [name.strip() for name in os.environ.get("RODSIM_PARTS", "").split(",")]
-    return tuple(import_module(name).KIND for name in (*KINDS, *filter(None, own)))
+    return (*(import_module(name).KIND for name in KINDS), *map(_own, filter(None, own)))
+
+
+def _own(name: str) -> Kind:
+    """Return a kind that is not one of rodsim's; raises UsageError."""
+    from rodsim.errors import UsageError
+
+    try:
+        return import_module(name).KIND
+    except ImportError as error:
+        raise UsageError(f"RODSIM_PARTS: cannot import '{name}': {error}") from error
+    except AttributeError:
+        raise UsageError(f"RODSIM_PARTS: '{name}' has no KIND: see docs/own-parts.md") from None
 
 
 def with_words(model: type) -> type:

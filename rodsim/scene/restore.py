@@ -43,8 +43,11 @@ def restore_scene(run) -> Scene:
     return replace(scene, initial=replace(first, work=scene.initial.work))
 
 
-def stored_state(run, frame: int) -> State:
-    """Return the positions and triads of one frame as a state without tracers."""
+def stored_state(run, frame: int, ledger: int = 0) -> State:
+    """Return the positions and triads of one frame as a state without tracers.
+
+    ``ledger`` : how many numbers the ledger of its scene has; they are 0.
+    """
     position = np.ascontiguousarray(run.read("position", frame).T)
     director = np.ascontiguousarray(run.read("director", frame).transpose(1, 2, 0))
-    return State(float(run.time[frame]), position, director, np.zeros((3, 0)))
+    return State(float(run.time[frame]), position, director, np.zeros((3, 0)), np.zeros(ledger))
