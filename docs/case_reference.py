@@ -52,8 +52,8 @@ TAIL = """## Expressions
 
 The entries of `strain_twist`, and of forces and torques in `loads`, are numbers, or expressions in
 the arc length `s`, the time `t`, `pi` and the names in `parameters`, those of `fluid.flow` in `x`,
-`y`, `z`, `t`, `pi` and those names, with `+ - * / ** %`, the comparisons `< <= > >=` and the functions
-{functions};
+`y`, `z`, `t`, `pi` and those names, with `+ - * / ** %`, the comparisons `< <= > >=` and the
+functions {functions};
 `where(condition, a, b)` chooses. The first point of a rod is at s = 0; strain twist is taken at the
 middle of each segment. Nothing in a case file can run code.
 

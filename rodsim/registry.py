@@ -74,7 +74,11 @@ def with_words(model: type) -> type:
     fields = {
         kind.word: (
             kind.words | None,
-            Field(None, description=kind.about, json_schema_extra={"dimension": kind.dimension}),
+            Field(
+                None,
+                description=kind.about,
+                json_schema_extra={"dimension": kind.dimension} if kind.dimension else None,
+            ),
         )
         for kind in kinds()
         if kind.where == model.__name__
