@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -12,7 +13,8 @@ from contents import differences
 from scenes import ROOT
 
 PAGE = (ROOT / "docs" / "own-parts.md").read_text(encoding="utf-8")
-FILES = dict(re.findall(r"<!-- own part: (\S+) -->\n```\w+\n(.*?)```", PAGE, re.S))
+BLOCKS = dict(re.findall(r"```(\w+)\n(.*?)```", PAGE, re.S))  # one of each language
+FILES = {"trough.py": BLOCKS["python"], "case.yaml": BLOCKS["yaml"]}
 STOP = """
 from rodsim import load_case, simulate
 from rodsim.run.listener import Listener
@@ -31,8 +33,8 @@ simulate(load_case("case.yaml"), "stopped.h5", listener=Asking())
 def call(tmp_path_factory):
     """Return a function that starts Python in a folder with the files of the page."""
     folder = tmp_path_factory.mktemp("own")
-    for name in ("trough.py", "case.yaml"):
-        (folder / name).write_text(FILES[name])
+    for name, text in FILES.items():
+        (folder / name).write_text(text)
     environment = {**os.environ, "RODSIM_PARTS": "trough", "PYTHONPATH": str(folder)}
     environment.pop("NUMBA_THREADING_LAYER", None)  # of this process, which has loaded tbb
 
@@ -84,17 +86,18 @@ def test_it_stops_and_resumes_with_the_same_bits(call, whole):
     assert differences(call.folder / "stopped.h5", whole) == []
 
 
-def test_a_sweep_goes_over_its_number(call):
-    rodsim(call, "sweep", "case.yaml", "--set", "trough.stiffness=[1e-4, 3e-4]", "--set",
-           "time.end=1e-3", "-o", "swept", "-j", "1")  # fmt: skip
-    table = (call.folder / "swept" / "summary.csv").read_text()
+def test_the_commands_of_the_page_run_sweep_over_its_number_and_draw_its_flow(call):
+    path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+    environment = {**os.environ, "PATH": path}
+    environment.pop("NUMBA_THREADING_LAYER", None)
+    done = subprocess.run(["bash", "-euc", BLOCKS["sh"]], cwd=call.folder, env=environment,
+                          capture_output=True, text=True)  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert "trough_work" in done.stdout
+    table = (call.folder / "sweep" / "summary.csv").read_text()
     assert table.count("finished") == 2
     assert "trough.stiffness" in table.splitlines()[0]
-
-
-def test_its_flow_is_drawn(call, whole):
-    rodsim(call, "flow", str(whole), "--at", "0.01", "-o", "flow.png")
-    assert (call.folder / "flow.png").stat().st_size > 10_000
+    assert (call.folder / "out_flow.png").stat().st_size > 10_000
 
 
 def test_its_words_are_checked_and_in_the_schema(call):
