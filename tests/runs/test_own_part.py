@@ -1,5 +1,6 @@
 """A part that is defined in a file of its own: the one that docs/own-parts.md shows."""
 
+import csv
 import os
 import re
 import subprocess
@@ -77,6 +78,19 @@ def test_it_runs_and_its_work_is_in_the_file(whole):
     assert abs(kept) < 5e-3 * energy[0]  # O(ds^2), and the time at a tolerance of 1e-4
 
 
+def test_its_flow_is_that_of_its_loads(call, whole):
+    """Far away a rod in a trough is its net force at a point: u = f (1/r + z z/r^3)/(8 pi mu)."""
+    rodsim(
+        call, "flow", str(whole), "--at", "0", "--raw", "--grid", "0,500:501:2,0.6", "-o", "far.csv"
+    )
+    with open(call.folder / "far.csv", newline="") as file:
+        found = next(csv.DictReader(file))
+    with h5py.File(whole) as file:
+        force = file["observables/net_force/value"][0]
+    key = next(head for head in found if head.startswith("velocity_y"))
+    assert float(found[key]) == pytest.approx(2 * force[1] / (8 * np.pi * 1.3e-6 * 499.3), rel=1e-2)
+
+
 def test_it_stops_and_resumes_with_the_same_bits(call, whole):
     done = call("-c", STOP, code=1)
     assert "StoppedError" in done.stderr
@@ -86,6 +100,7 @@ def test_it_stops_and_resumes_with_the_same_bits(call, whole):
     assert differences(call.folder / "stopped.h5", whole) == []
 
 
+@pytest.mark.long
 def test_the_commands_of_the_page_run_sweep_over_its_number_and_draw_its_flow(call):
     path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
     environment = {**os.environ, "PATH": path}

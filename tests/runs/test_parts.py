@@ -10,6 +10,7 @@ from contents import differences
 from test_resume import killed_at_every_step
 
 from rodsim import load_case, open_trajectory, resume, simulate
+from rodsim.analysis.energy import energy_table
 from rodsim.analysis.flow import flow_at, tracer_paths
 from rodsim.analysis.grid import make_grid
 from rodsim.analysis.replay import Replay
@@ -77,6 +78,29 @@ def test_the_file_has_what_acted_and_its_ledger(unbroken):
         assert run.observable("external_work") == pytest.approx(work, rel=1e-12)
         assert run.observable("dissipated")[0] == 0.0
         assert (np.diff(run.observable("dissipated")) > 0).all()
+
+
+def test_the_energy_table_has_tethers_and_the_ledger(tmp_path):
+    """With a strain twist that does not change: one that is driven does work that nobody counts."""
+    (tmp_path / "case.yaml").write_text(SCENE.replace('"1.3*sin(3*s + 900*t)"', "1.3"))
+    simulate(load_case(tmp_path / "case.yaml"), tmp_path / "out.h5")
+    table = energy_table(tmp_path / "out.h5")
+    assert table.columns == (
+        "time", "bending", "twisting", "shear", "stretch", "tether", "total", "work", "dissipated"
+    )  # fmt: skip
+    rows = dict(zip(table.columns, table.rows.T, strict=True))
+    assert rows["total"] == pytest.approx(sum(table.rows.T[1:6]), rel=1e-14)
+    kept = rows["total"] + rows["dissipated"] - rows["work"]
+    # Few points, and the energies of stiff modes at frames inside long steps.
+    assert kept == pytest.approx(np.full(len(kept), kept[0]), abs=0.02 * rows["dissipated"][-1])
+
+
+def test_info_lists_what_acts(tmp_path):
+    (tmp_path / "case.yaml").write_text(SCENE)
+    result = CliRunner().invoke(main, ["info", str(tmp_path / "case.yaml")])
+    assert result.exit_code == 0, result.stderr
+    acting = "acting: elastic (driven), loads (driven), tethers, fluid, flow (driven)\n"
+    assert acting in result.stdout
 
 
 def test_a_scene_without_them_stores_no_more_than_before(tmp_path):
