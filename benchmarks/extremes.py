@@ -132,6 +132,30 @@ def ring_twist(omega_r0):
     return changed(RING, {"rods.ring.strain_twist": seeded, "time.end": 0.2})
 
 
+def tethered(stiffness):
+    """The rod, its end tied to a point in space that it is 1 um away from."""
+    link = {"from": [0, 1, LENGTH], "to": {"rod": "rod", "at": "end"}, "stiffness": stiffness}
+    return changed(ROD, {"tethers": {"link": link}})
+
+
+def followed(force, turning=0.0):
+    """The rod, pushed at its end along its own axis, and across it at a rate."""
+    across = [f"{force}*cos({turning}*t)", f"{force}*sin({turning}*t)"] if turning else [0, 0]
+    tip = {"at": "end", "force": [*across, -force], "frame": "triad"}
+    return changed(ROD, {"rods.rod.loads": {"tip": tip}})
+
+
+def sheared(times):
+    """The rod, straight at rest, in a shear so many times its threshold of buckling, four units of
+    strain: 8 pi mu (gamma/2) L^4/B = 372 at L/epsilon = 12.6, from slender-body theory's slope."""
+    gamma = 2 * times * 372 * 3.5e-3 / (8 * math.pi * 1e-6 * LENGTH**4)
+    return changed(ROD, {
+        "fluid.flow": [f"{gamma}*z", 0, 0], "time.end": 4 / gamma,
+        "rods.rod.strain_twist": [0, 0, 0], "rods.rod.moduli.shear": 80.0,
+        "rods.rod.shape.rotate": {"axis": [0, 1, 0], "degrees": -60},
+    })  # fmt: skip
+
+
 POWERS = (-3, -2, -1, 1, 2, 3, 4)
 SPACING = LENGTH / (POINTS - 1)
 SCENES = {
@@ -178,6 +202,12 @@ SCENES = {
     "neighbours": {"two rods 0.1 epsilon apart": pair(0.1), "on one line": pair(0.0)},
     "ring": {"just below its instability": ring_twist(1.70),
              "just above it": ring_twist(1.80)},
+    "acting": {
+        **{f"tether, k = 1e{p} g s^-2": tethered(10.0**p) for p in (-2, 0, 2, 4)},
+        **{f"follower, f L^2/B = {n}": followed(n * 3.5e-3 / LENGTH**2) for n in (30, 300, 3000)},
+        "follower, 300, turning at 6e4 rad/s": followed(300 * 3.5e-3 / LENGTH**2, 6e4),
+        **{f"shear, {n} times the threshold": sheared(n) for n in (3, 30, 300)},
+    },
     "long": {"rod, 100 times the time": rod(time__end=0.1),
              "ring, 100 times the time": changed(RING, {"time.end": 5.0})},
 }  # fmt: skip

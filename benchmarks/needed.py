@@ -2,6 +2,7 @@
 
 import tempfile
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -20,6 +21,14 @@ COLUMNS = {
 FLAT = ("rods.ring.shape.twist_perturbation=0", "rods.ring.strain_twist=[1.2, 0, 0]",
         "rods.ring.shape.rotate={axis: [0, 1, 0], degrees: 90}")  # fmt: skip
 DRIVEN = "rods.ring.strain_twist=['1.2 + 0*t', 0, 0.6]"
+PARTS = {
+    "loads: weight along the ring": "rods.ring.loads={w: {along: all, force: [0, 0, -1e-4]}}",
+    "loads: a follower, driven": "rods.ring.loads={w: {s: 0.3, force: [0, 0, '-1e-4*cos(t)'],"
+                                 " frame: triad}}",
+    "tethers: one": "tethers={t: {from: {rod: ring, s: 0.3}, to: [3, 0, 0], stiffness: 1e-4}}",
+    "fluid.flow: a shear": "fluid.flow=['2.3*z', 0, 0]",
+    "fluid.flow: sin, exp, t": "fluid.flow=['sin(2.3*z + t)*exp(-y**2)', 0, 0]",
+}  # fmt: skip
 ALL_FIELDS = "[position, director, velocity, angular_velocity, force, torque]"
 
 
@@ -32,7 +41,8 @@ def main(quick, repeats, points):
     to a temporary folder.
     """
     with tempfile.TemporaryDirectory() as folder:
-        pairs = {**sums(points), **evaluations(points), **frames(points, Path(folder))}
+        pairs = {**sums(points), **evaluations(points), **parts(points)}
+        pairs |= frames(points, Path(folder))
         timers = {
             (name, side): Timed(work, clock=time.process_time)
             for name, both in pairs.items()
@@ -83,6 +93,16 @@ def evaluations(points):
     }
 
 
+def parts(points):
+    """Return pairs of evaluations: with a part, its ledger and all, and without it."""
+    plain = evaluate(system(points))
+    pairs = {name: (evaluate(system(points, text)), plain) for name, text in PARTS.items()}
+    pairs["the same list twice (the error of all this)"] = evaluate(system(points)), plain
+    heavy = system(points, *list(PARTS.values())[:1])
+    pairs["the ledger, of a weight"] = evaluate(heavy), evaluate(without_ledger(heavy))
+    return pairs
+
+
 def system(points, *overrides):
     """Return the system of the closed ring with so many points."""
     from rodsim.case import load_case
@@ -91,6 +111,15 @@ def system(points, *overrides):
 
     change = f"rods.ring.shape.points={points}"
     return RodSystem(build_scene(load_case(CONFIGS / "closed_ring.yaml", [change, *overrides])))
+
+
+def without_ledger(system):
+    """Return a system with the same parts, none of which counts as acting from outside."""
+    from rodsim.scene.build import with_parts
+    from rodsim.scene.system import RodSystem
+
+    parts = [replace(part, external=False) for part in system.scene.parts]
+    return RodSystem(with_parts(system.scene, parts))
 
 
 def evaluate(system):

@@ -36,10 +36,12 @@ SECTIONS = {
     "Fluid": "fluid",
     "Spacings": "fluid.epsilon with spacings",
     "Radius": "fluid.epsilon with radius",
+    "Wall": "fluid.wall",
     "Rod": "rods.NAME",
     "Perturb": "rods.NAME.perturb",
     "Moduli": "rods.NAME.moduli",
     "StrainTable": "rods.NAME.strain_twist.N as a mapping",
+    "Load": "rods.NAME.loads.NAME",
     "Straight": "rods.NAME.shape, kind: straight",
     "Ring": "rods.NAME.shape, kind: ring",
     "Helix": "rods.NAME.shape, kind: helix",
@@ -47,6 +49,8 @@ SECTIONS = {
     "FileShape": "rods.NAME.shape, kind: file",
     "CurveShape": "rods.NAME.shape, kind: curve",
     "Rotate": "rods.NAME.shape.rotate",
+    "Tether": "tethers.NAME",
+    "OnRod": "an end of a tether on a rod",
     "Tube": "tracers.NAME as a mapping",
     "Time": "time",
     "Output": "output",
@@ -54,9 +58,11 @@ SECTIONS = {
 LAST = ("rotate", "origin")  # keys that all shapes share
 TAIL = """## Expressions
 
-Any number may be an expression of `pi` and the names in `parameters`, the entries of `strain_twist`
-of the arc length `s` and the time `t` as well, with `+ - * / ** %`, the comparisons `< <= > >=` and
-the functions {functions};
+Any number may be an expression of `pi` and the names in `parameters`; the entries of
+`strain_twist`, and of forces and torques in `loads`, of the arc length `s` and the time `t` as
+well, moduli of `s`, those of `fluid.flow` of `x`, `y`, `z`, `t`; with `+ - * / ** %`, the
+comparisons `< <= > >=` and the functions
+{functions};
 `where(condition, a, b)` chooses, `arctan2(y, x)` is an angle, `heaviside(0)` is 1/2; more in
 [numbers](numbers.md).
 

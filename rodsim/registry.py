@@ -31,8 +31,9 @@ class Kind:
     ask for it. Raises CaseError.
     word : its key in the case file, in the section ``where`` (Case, Fluid or Rod). words : the type
     of what stands there. dimension, about : of the schema.
-    check : called with a case, sections of which may be None, yields (path, reason) of what is
-    wrong across sections.
+    check : called with a case, sections of which may be None, and the names of all rods of the
+    file, also of those that did not validate; yields (path, reason) of what is wrong across
+    sections.
     """
 
     build: Callable
@@ -48,7 +49,19 @@ class Kind:
 def kinds() -> tuple[Kind, ...]:
     """Return all kinds, the user's own last."""
     own = [name.strip() for name in os.environ.get("RODSIM_PARTS", "").split(",")]
-    return tuple(import_module(name).KIND for name in (*KINDS, *filter(None, own)))
+    return (*(import_module(name).KIND for name in KINDS), *map(_own, filter(None, own)))
+
+
+def _own(name: str) -> Kind:
+    """Return a kind that is not one of rodsim's; raises UsageError."""
+    from rodsim.errors import UsageError
+
+    try:
+        return import_module(name).KIND
+    except ImportError as error:
+        raise UsageError(f"RODSIM_PARTS: cannot import '{name}': {error}") from error
+    except AttributeError:
+        raise UsageError(f"RODSIM_PARTS: '{name}' has no KIND: see docs/own-parts.md") from None
 
 
 def with_words(model: type) -> type:
@@ -61,7 +74,11 @@ def with_words(model: type) -> type:
     fields = {
         kind.word: (
             kind.words | None,
-            Field(None, description=kind.about, json_schema_extra={"dimension": kind.dimension}),
+            Field(
+                None,
+                description=kind.about,
+                json_schema_extra={"dimension": kind.dimension} if kind.dimension else None,
+            ),
         )
         for kind in kinds()
         if kind.where == model.__name__

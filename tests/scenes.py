@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rodsim.case import load_case
+from rodsim.case import case_from_mapping, load_case
 from rodsim.integrators.make import make_integrator
 from rodsim.scene.build import build_scene
 from rodsim.scene.system import RodSystem
@@ -52,3 +52,16 @@ def difference(state, other):
     """Largest difference of (positions, directors) of two states."""
     position = abs(state.position - other.position).max()
     return position, abs(state.director - other.director).max()
+
+
+def system_from(data):
+    """Return the case and the system of a case that is plain data."""
+    case = case_from_mapping(data)
+    return case, RodSystem(build_scene(case))
+
+
+def end_of(data):
+    """Run a case that is plain data to its end in memory; return (last state, system)."""
+    case, system = system_from(data)
+    steps = make_integrator(case.time, system).steps(system.scene.initial, case.time.end)
+    return last(steps).end, system

@@ -11,11 +11,17 @@ from rodsim.output import open_trajectory
 from rodsim.units import thermal_energy
 
 PARTS = ("bending", "twisting", "shear", "stretch")
+BESIDE = {"kinetic": "kinetic_energy", "work": "external_work", "dissipated": "dissipated"}
 
 
 @dataclass(frozen=True)
 class EnergyTable:
-    """Rows of numbers with named, unit-bearing columns: time, the parts, total, kinetic."""
+    """Rows of numbers with named, unit-bearing columns.
+
+    time; what is stored in the rods, and in tethers where there are any; total, the sum of that;
+    kinetic where there is a density; work from outside and dissipated, both since t = 0, where
+    anything acts from outside: then total + dissipated - work stays what it was, to O(ds^2).
+    """
 
     columns: tuple[str, ...]
     unit: str
@@ -48,15 +54,26 @@ def energy_table(path, kelvin: float | None = None) -> EnergyTable:
     with open_trajectory(path) as run:
         if run.frames == 0:
             raise FileError(f"{path}: has no frames yet ({run.status})")
-        parts = [run.observable(f"{part}_energy").sum(axis=1) for part in PARTS]
-        columns = ["time", *PARTS, "total"]
-        series = [run.time, *parts, np.sum(parts, axis=0)]
-        if "kinetic_energy" in run.observables:
-            columns.append("kinetic")
-            series.append(run.observable("kinetic_energy").sum(axis=1))
+        stored = {name.removesuffix("_energy"): _summed(run, name) for name in _stored(run)}
+        series = {"time": run.time, **stored, "total": np.sum([*stored.values()], axis=0)}
+        for column, name in BESIDE.items():
+            if name in run.observables:
+                series[column] = _summed(run, name)
         unit, units = run.unit("bending_energy"), run.units
-    rows = np.array(series).T
+    rows = np.array([*series.values()]).T
     if kelvin is not None:
         rows[:, 1:] /= thermal_energy(kelvin, units)
         unit = f"kT at {kelvin:g} K"
-    return EnergyTable(tuple(columns), unit, units["time"], rows)
+    return EnergyTable(tuple(series), unit, units["time"], rows)
+
+
+def _stored(run):
+    """Return the names of all energies that a scene stores: elastic first."""
+    elastic = [f"{part}_energy" for part in PARTS]
+    others = (name for name in run.observables if name.endswith("_energy"))
+    return [*elastic, *(n for n in others if n not in (*elastic, BESIDE["kinetic"]))]
+
+
+def _summed(run, name):
+    values = run.observable(name)
+    return values.reshape(len(values), -1).sum(axis=1)

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from rodsim.case.methods import METHODS
+from rodsim.compiled.parts import TRACERS
 from rodsim.scene.evaluation import fluid_velocity, loads_of
 from rodsim.scene.restore import restore_scene, stored_state
 from rodsim.scene.state import Scene, State
@@ -70,6 +71,11 @@ class Replay:
         system = RodSystem(self.scene)
         return system, FastestRate(system)
 
+    @property
+    def without_pressure(self) -> list[str]:
+        """What moves the fluid and has a pressure that nobody knows, in words of the case file."""
+        return [part.drive for part in self.scene.parts.of(TRACERS) if part.pressure is None]
+
     def sources(self, frame: int) -> Sources:
         """Return what the rods of a frame exert on the fluid, eqs. (30), (31)."""
         state = stored_state(self.run, frame)
@@ -87,7 +93,7 @@ class Replay:
         the velocity, so frames that are better than that are left as they are: the first one, those
         of fixed steps, and those of a run at a tolerance of 1e-6 or less.
         """
-        state, loads = stored_state(self.run, frame), []
+        state, loads = stored_state(self.run, frame, self.scene.ledger), []
         rate = self._machinery[1].estimate(state) if frame and self.rough else 0.0
         if not (np.isfinite(rate) and rate > 0.0):
             return self.sources(frame)

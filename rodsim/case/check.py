@@ -34,9 +34,10 @@ def check(case: Case, rod_names: Iterable[str]) -> tuple[list[Finding], list[Fin
 
     ``rod_names`` are all rods of the file, also those that did not validate.
     """
-    errors = [*_rods(case), *_tracers(case, list(rod_names))]
+    rod_names = list(rod_names)
+    errors = [*_rods(case), *_tracers(case, rod_names)]
     for kind in kinds():
-        errors += kind.check(case) if kind.check else ()
+        errors += kind.check(case, rod_names) if kind.check else ()
     warnings: list[Finding] = [*_thin(case)]
     if case.time is not None:
         errors += _step_missing(case.time)

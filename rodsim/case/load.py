@@ -156,7 +156,7 @@ def _valid_part(data: dict, bad: list[Path]) -> Case:
             if inside:
                 section = {key: item for key, item in section.items() if key not in inside}
             adapter = TypeAdapter(field.annotation)
-            parts[name] = adapter.validate_python(section)
+            parts[name] = None if inside and not section else adapter.validate_python(section)
     if any(path[0] == "parameters" for path in bad):
         parts["parameters"] = None
     return Case.model_construct(**parts)

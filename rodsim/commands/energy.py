@@ -16,7 +16,11 @@ from rodsim.commands.common import STILLS, output_argument, say, written_path
 @click.option("--plot", "plot_path", type=click.Path(path_type=Path, dir_okay=False),
               help="Draw the energies over time (needs rodsim[plot]).")  # fmt: skip
 def energy(output, kelvin, csv_path, plot_path):
-    """Print bending, twisting, shear, stretch, total and kinetic energy over time."""
+    """Print bending, twisting, shear, stretch, total and kinetic energy over time.
+
+    With tethers theirs too, part of the total; where anything acts from outside, its work and what
+    the fluid has dissipated since t = 0.
+    """
     from rodsim.analysis.energy import energy_table
 
     if csv_path:

@@ -97,6 +97,9 @@ def _flow(run, at, grid_text, resolution, path, colour, arrows, raw, quiet):
     frame = _frame(run, at, run.frames - 1, quiet)
     grid = make_grid(grid_text, run.read("position", frame), resolution)
     flow = flow_at(replay, frame, grid, raw)
+    if replay.without_pressure and not quiet:
+        names = ", ".join(replay.without_pressure)
+        click.echo(f"pressure: without that of {names}, which is not known", err=True)
     if path.suffix in STILLS:
         from rodsim.plotting.flow_pictures import plot_flow
 

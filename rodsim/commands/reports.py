@@ -45,6 +45,8 @@ def describe_case(case, refuse=False) -> str:
     lines += describe_start(scene, system, unit.names)
     if scene.planar:
         lines.append("planar: only u_y, u_z and w_x are computed")
+    if scene.parts.external:
+        lines.append(f"acting: {_acting(scene.parts)}")
     for name, count in scene.tracer_groups.items():
         lines.append(f"tracers {name}: {count} markers")
     lines += describe_groups(case, scene)
@@ -57,6 +59,12 @@ def describe_case(case, refuse=False) -> str:
     if refuse:
         lines += [f"warning: {problem}" for problem in check_step(case, limits)]
     return "\n".join([*lines, *describe_limits(limits, unit.time)])
+
+
+def _acting(parts) -> str:
+    """Return the names of all parts, in their order, and which of them depend on time."""
+    driven = {part.name: part.row.driven for part in parts}
+    return ", ".join(f"{name} (driven)" if yes else name for name, yes in driven.items())
 
 
 def describe_limits(limits, time_unit: str) -> list[str]:

@@ -104,6 +104,18 @@ def _comparison(code, a, b):
 
 
 @unsigned
+def _floor_of_ratio(a, b):
+    """Return the floor of a/b from what is left over, as NumPy does: a/b may round to a whole."""
+    if b == 0.0:
+        return a / b
+    left = np.fmod(a, b)
+    whole = (a - left) / b
+    if left != 0.0 and (left < 0.0) != (b < 0.0):
+        whole -= 1.0
+    return np.rint(whole)
+
+
+@unsigned
 def _of_two(code, a, b):
     """Return one of the operations on two numbers."""
     if code == ADD:
@@ -117,9 +129,9 @@ def _of_two(code, a, b):
     if code == POWER:
         return a**b
     if code == MODULO:
-        return a - np.floor(a / b) * b
+        return np.mod(a, b)
     if code == WHOLE:
-        return np.floor(a / b)
+        return _floor_of_ratio(a, b)
     if code == MIN:
         return np.minimum(a, b)
     if code == MAX:

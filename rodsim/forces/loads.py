@@ -19,6 +19,7 @@ from rodsim.case.fields import Model, Name, NumberOrExpression, not_empty
 from rodsim.compiled.kernels import part
 from rodsim.compiled.parts import FORCE, Part
 from rodsim.compiled.row import Entry, Row
+from rodsim.errors import CaseError
 from rodsim.forces.places import AT, S, arc_length, at_field, check_place, end_weights, s_field
 from rodsim.forces.places import shares as shares_at
 from rodsim.nodes import Rod
@@ -26,6 +27,7 @@ from rodsim.registry import Kind
 
 Triple = tuple[NumberOrExpression, NumberOrExpression, NumberOrExpression]
 NOTHING = (0.0, 0.0, 0.0)
+LOOKED_AT = np.linspace(0.0, 1.0, 12)  # of the run: when it is checked
 
 
 class Load(Model):
@@ -45,12 +47,12 @@ class Load(Model):
     )
 
 
-def _check(case) -> Iterator[tuple]:
+def _check(case, rod_names) -> Iterator[tuple]:
     for name, rod in (case.rods or {}).items():
         for label, load in (rod.loads or {}).items():
             path = ("rods", name, "loads", label)
             if load.along is None:
-                yield from check_place(load, path, name, case)
+                yield from check_place(load, path, name, case, rod_names)
             elif load.at is not None or load.s is not None:
                 yield path, "is along the whole rod: leave out at and s"
             if not any(entry != 0.0 for entry in (*load.force, *load.torque)):
@@ -78,23 +80,39 @@ class _Applied:
     group: tuple
 
 
-def _applied(load: Load, rod: Rod, group) -> _Applied:
+def _applied(load: Load, rod: Rod, label: str, case) -> _Applied:
+    group = rod.name, label
     if load.along is not None:
         nodes = range(rod.first, rod.first + rod.count)
         return _Applied(load, list(nodes), list(end_weights(rod)), rod.points_at, group)
-    s = arc_length(load, rod)
+    s = arc_length(load, rod, ("rods", rod.name, "loads", label), case)
     nodes, weights = zip(*shares_at(s, rod), strict=True)
     return _Applied(load, nodes, weights, np.full(len(nodes), s), group)
 
 
+def _check_finite(found, case) -> None:
+    """Refuse a load that is not finite at the start of the run, at its end, or between."""
+    times = case.time.end * LOOKED_AT[:, None]
+    for item in found:
+        for i, value in enumerate((*item.load.force, *item.load.torque)):
+            values = value(item.s, times) if callable(value) else np.zeros(1)
+            if not np.isfinite(values).all():
+                t, k = np.unravel_index(int(np.isfinite(values).argmin()), values.shape)
+                at = f"s = {item.s[k]:.4g}, t = {times[t, 0]:.4g}"
+                rod, label = item.group
+                path = ("rods", rod, "loads", label, ("force", "torque")[i // 3], i % 3)
+                raise CaseError([case.source.problem(path, f"is not finite at {at}")])
+
+
 def _build(case, scene) -> list[Part]:
     found = [
-        _applied(load, rod, (rod.name, label))
+        _applied(load, rod, label, case)
         for rod in scene.rods
         for label, load in (case.rods[rod.name].loads or {}).items()
     ]
     if not found:
         return []
+    _check_finite(found, case)
     count = sum(len(item.nodes) for item in found)
     entries, begin = [], 0
     for item in found:

@@ -9,7 +9,8 @@ import numpy as np
 from pydantic import Field
 
 from rodsim.case.fields import NotNegative, quantity
-from rodsim.case.words import did_you_mean, one_of
+from rodsim.case.words import did_you_mean
+from rodsim.errors import CaseError
 from rodsim.nodes import Rod, Rods
 
 AT = Literal["start", "end"] | None
@@ -30,8 +31,10 @@ def s_field():
 S = NotNegative | None
 
 
-def arc_length(place, rod: Rod) -> float:
-    """Return the arc length of a place with ``at`` or ``s``."""
+def arc_length(place, rod: Rod, path, case) -> float:
+    """Return the arc length of a place with ``at`` or ``s``; CaseError where the rod has none."""
+    for found, reason in _not_there(place, path, rod.name, rod.closed, rod.length):
+        raise CaseError([case.source.problem(found, reason)])
     if place.s is not None:
         return min(float(place.s), rod.length)
     return 0.0 if place.at == "start" else rod.length
@@ -49,24 +52,27 @@ def shares(s: float, rod: Rod) -> list[tuple[int, float]]:
     return [(rod.first + node, float(share)) for node, share in pair if share > 0.0]
 
 
-def check_place(place, path, name, case) -> Iterator[tuple]:
-    """Yield what is wrong with a place on a rod that a case names."""
-    rods = case.rods or {}
+def check_place(place, path, name, case, rod_names) -> Iterator[tuple]:
+    """Yield what is wrong with a place on a rod that a case names; ``rod_names``: of all rods."""
     given = [place.at is not None, place.s is not None]
     if sum(given) != 1:
         yield path, "needs one of at: start, at: end, s: (an arc length)"
         return
-    if name not in rods:
-        known = f": the rods are {one_of(list(rods))}" if rods else ""
-        yield (*path, "rod"), f"no such rod{did_you_mean(str(name), list(rods)) or known}"
+    if name not in rod_names:
+        known = f": the rods are {', '.join(rod_names)}"
+        yield (*path, "rod"), f"no such rod{did_you_mean(name, rod_names) or known}"
+    if name not in (case.rods or {}):
         return
-    shape = rods[name].shape
-    if place.at is not None and shape.is_closed:
+    shape = case.rods[name].shape
+    length = None if shape.ds is None else shape.segments * shape.ds  # of a file: not known yet
+    yield from _not_there(place, path, name, shape.is_closed, length)
+
+
+def _not_there(place, path, name, closed, length) -> Iterator[tuple]:
+    if place.at is not None and closed:
         yield (*path, "at"), f"rod '{name}' is closed and has no {place.at}: give s"
-    if place.s is not None and shape.ds is not None:
-        length = shape.segments * shape.ds
-        if place.s > length * (1.0 + BEYOND):
-            yield (*path, "s"), f"must be <= {length:.6g}, the length of rod '{name}'"
+    if place.s is not None and length is not None and place.s > length * (1.0 + BEYOND):
+        yield (*path, "s"), f"must be <= {length:.6g}, the length of rod '{name}'"
 
 
 def rod_named(rods: Rods, name: str) -> Rod:

@@ -78,25 +78,28 @@ def _ends(tether):
     return {key: getattr(tether, key) for key in ("from", "to")}
 
 
-def _check(case) -> Iterator[tuple]:
+def _check(case, rod_names) -> Iterator[tuple]:
     for name, tether in (case.tethers or {}).items():
         path, on_rods = ("tethers", name), 0
         for key, end in _ends(tether).items():
             if isinstance(end, OnRod):
                 on_rods += 1
-                yield from check_place(end, (*path, key), end.rod, case)
+                yield from check_place(end, (*path, key), end.rod, case, rod_names)
         if not on_rods:
             yield path, "holds no rod: give a place on one, such as to: {rod: NAME, at: end}"
+        first, second = _ends(tether).values()
+        if first == second:
+            yield path, "holds a place to itself: from and to are the same"
         if tether.only == "push" and tether.length == 0.0:
             yield (*path, "length"), "is needed where a tether can only push"
 
 
-def _numbers(end, rods) -> list[float]:
+def _numbers(end, rods, path, case) -> list[float]:
     """Return nodes, shares and place of an end; node -1 is a point in space."""
     if not isinstance(end, OnRod):
         return [-1.0, -1.0, 0.0, 0.0, *end]
     rod = rod_named(rods, end.rod)
-    pairs = [*shares_at(arc_length(end, rod), rod), (0, 0.0)][:2]
+    pairs = [*shares_at(arc_length(end, rod, path, case), rod), (0, 0.0)][:2]
     return [float(k) for k, _ in pairs] + [share for _, share in pairs] + [0.0, 0.0, 0.0]
 
 
@@ -107,12 +110,16 @@ def _build(case, scene) -> list[Part]:
         _check_plane(case, scene)
     fixed = [
         number
-        for tether in case.tethers.values()
+        for name, tether in case.tethers.items()
         for number in (
             tether.stiffness,
             tether.length,
             PULL_OR_PUSH[tether.only],
-            *(n for end in _ends(tether).values() for n in _numbers(end, scene.rods)),
+            *(
+                n
+                for key, end in _ends(tether).items()
+                for n in _numbers(end, scene.rods, ("tethers", name, key), case)
+            ),
         )
     ]
     fixed = np.array(fixed, dtype=float)

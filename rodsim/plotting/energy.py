@@ -1,10 +1,12 @@
 """Energies over time."""
 
+from itertools import cycle
+
 from rodsim.plotting import style
 
 
 def plot_energies(table, path) -> None:
-    """Draw every column of an :class:`~rodsim.analysis.energy.EnergyTable` over time to a file."""
+    """Draw the energies of an :class:`~rodsim.analysis.energy.EnergyTable` over time to a file."""
     figure = style.new_figure(6.4, 4.2)
     draw_energies(figure.add_subplot(), table)
     style.save(figure, path)
@@ -12,13 +14,11 @@ def plot_energies(table, path) -> None:
 
 def draw_energies(axis, table):
     """Draw the energies on a matplotlib axis (kinetic energy on its own scale); return the axis."""
-    styles = dict(
-        zip(table.columns[1:], ("-", "--", ":", "-.", "-", "--"), strict=False), total="-"
-    )
+    drawn = [name for name in table.columns[1:] if name not in ("kinetic", "work", "dissipated")]
+    styles = dict(zip(drawn, cycle(("-", "--", ":", "-.")), strict=False), total="-")
     time = table.rows[:, 0]
-    for column, values in zip(table.columns[1:], table.rows[:, 1:].T, strict=True):
-        if column == "kinetic":
-            continue
+    for column in drawn:
+        values = table.rows[:, table.columns.index(column)]
         width = 2.4 if column == "total" else 1.4
         axis.plot(time, values, styles[column], lw=width, label=column)
     style.scale(axis, table.rows[:, table.columns.index("total")])

@@ -50,11 +50,14 @@ def stored_diameter(run, case: Case) -> float:
     return hydrodynamic_diameter(case.fluid.blob, epsilon_of(case, run.rods)[0])
 
 
-def stored_state(run, frame: int) -> State:
-    """Return the positions and triads of one frame as a state without tracers."""
+def stored_state(run, frame: int, ledger: int = 0) -> State:
+    """Return the positions and triads of one frame as a state without tracers.
+
+    ``ledger`` : how many numbers the ledger of its scene has; they are 0.
+    """
     position = np.ascontiguousarray(run.read("position", frame).T)
     director = np.ascontiguousarray(run.read("director", frame).transpose(1, 2, 0))
-    return State(float(run.time[frame]), position, director, np.zeros((3, 0)))
+    return State(float(run.time[frame]), position, director, np.zeros((3, 0)), np.zeros(ledger))
 
 
 class _Frame:

@@ -146,9 +146,47 @@ def test_the_plasmid_keeps_its_linking_number(tmp_path):
         assert writhe(X) == pytest.approx(-0.76, abs=0.01)
 
 
+def test_the_sedimenting_fibre_bends_and_sinks_as_its_header_says(tmp_path):
+    with run("sedimenting_fibre", tmp_path) as trajectory:
+        x, time = trajectory.position, trajectory.time
+        assert x[-1, [0, -1], 2].mean() - x[-1, 30, 2] == pytest.approx(3.37, abs=0.01)
+        speed = -np.diff(x[:, :, 2].mean(axis=1)) / np.diff(time)
+        assert speed[-1] == pytest.approx(264, rel=0.005)
+        straight = 7e-4 * np.arcsinh(30) / (4 * np.pi * 1e-6)
+        assert speed[-1] / straight == pytest.approx(1.16, abs=0.005)
+
+
+@pytest.mark.compiled
+def test_the_fibre_in_shear_buckles_as_its_header_says(tmp_path):
+    with run("fibre_in_shear", tmp_path) as trajectory:
+        x = trajectory.position
+        apart = np.linalg.norm(x[:, -1] - x[:, 0], axis=1)
+        assert apart.min() == pytest.approx(6.08, abs=0.02)
+        assert trajectory.time[apart.argmin()] == pytest.approx(0.053, abs=2e-3)
+        assert apart[-1] > 10.0
+        energy = total(trajectory)
+        ledger = trajectory.observable("external_work") - trajectory.observable("dissipated")
+        assert energy - energy[0] == pytest.approx(ledger, abs=2e-3 * energy.max())
+
+
+@pytest.mark.compiled
+def test_the_tethered_pair_bends_as_its_header_says(tmp_path):
+    with run("tethered_pair", tmp_path) as trajectory:
+        x, held = trajectory.position, trajectory.observable("tether_energy")
+        gap = np.linalg.norm(x[:, 40] - x[:, 81], axis=1)
+        assert gap[[0, -1]] == pytest.approx([3.0, 1.2], rel=2e-3)
+        assert held[-1, :2].sum() == pytest.approx(2.45e-4, rel=5e-3)
+        energy = total(trajectory)
+        assert energy[-1] == pytest.approx(5.57e-4, rel=5e-3)
+        lost = held[0].sum() - held[-1].sum() - energy[-1]
+        assert trajectory.observable("dissipated")[-1] == pytest.approx(lost, rel=2e-3)
+        assert x[-1, :41, 1].mean() == pytest.approx(-x[-1, 41:, 1].mean(), rel=1e-6)
+
+
 def test_every_config_is_tested_here():
     assert {path.stem for path in CONFIGS.glob("*.yaml")} == {
         "open_rod", "open_rod_half_twist", "closed_ring", "closed_ring_low_twist", "flagellum",
         "two_flagella", "carpet",
         "plasmid", "traced_filament",
+        "sedimenting_fibre", "fibre_in_shear", "tethered_pair",
     }  # fmt: skip
