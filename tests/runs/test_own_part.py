@@ -26,7 +26,7 @@ class Asking(Listener):
         self.steps += 1
         return "the test" if self.steps == 9 else ""
 
-simulate(load_case("case.yaml"), "stopped.h5", stop=Asking())
+simulate(load_case("case.yaml"), "stopped.h5", listener=Asking())
 """
 
 
