@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -88,7 +88,7 @@ class Replay:
         the velocity, so frames that are better than that are left as they are: the first one, those
         of fixed steps, and those of a run at a tolerance of 1e-6 or less.
         """
-        state, loads = stored_state(self.run, frame), []
+        state, loads = replace(stored_state(self.run, frame), work=self.scene.initial.work), []
         rate = self._machinery[1].estimate(state) if frame and self.rough else 0.0
         if not (np.isfinite(rate) and rate > 0.0):
             return self.sources(frame)

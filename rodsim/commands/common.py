@@ -50,9 +50,9 @@ def warn(text) -> None:
     click.echo(f"warning: {text}", err=True)
 
 
-def say_warnings(case) -> None:
-    """Say what looks wrong in a case."""
-    for problem in case.warnings:
+def say_warnings(case, scene=None) -> None:
+    """Say what looks wrong in a case, and in its scene."""
+    for problem in (*case.warnings, *(scene.warnings if scene else ())):
         warn(problem)
 
 

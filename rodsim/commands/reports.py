@@ -12,6 +12,7 @@ from rodsim.commands.groups import (
 )
 from rodsim.errors import FileError
 from rodsim.run.recorder import frame_times
+from rodsim.scene.at_wall import mirror_gap
 from rodsim.scene.build import build_scene
 from rodsim.units import unit_text
 
@@ -27,6 +28,7 @@ def describe_case(case, refuse=False) -> str:
     scene = build_scene(case)
     unit = case.units
     lines = [case.title] if case.title else []
+    lines += [f"warning: {problem}" for problem in scene.warnings]
     lines += [*describe_parameters(case), *describe_rods(case, scene)]
     lines.append(
         f"fluid: viscosity {scene.viscosity:.6g} {unit_text(VISCOSITY, unit.names)}"
@@ -34,6 +36,8 @@ def describe_case(case, refuse=False) -> str:
         f"epsilon {scene.epsilon:.6g} {unit.length} "
         f"= {scene.epsilon / scene.rods.spacing[0]:.4g} spacings"
     )
+    if scene.wall is not None:
+        lines.append(describe_wall(scene, unit.length))
     if scene.planar:
         lines.append("planar: only u_y, u_z and w_x are computed")
     for name, count in scene.tracer_groups.items():
@@ -48,6 +52,16 @@ def describe_case(case, refuse=False) -> str:
     if refuse:
         lines += [f"warning: {problem}" for problem in check_step(case, limits)]
     return "\n".join([*lines, *describe_limits(limits, unit.time)])
+
+
+def describe_wall(scene, length_unit: str) -> str:
+    """Return the line on the wall of a scene: where it is, and how far above it the rods start."""
+    gap, rod, k = mirror_gap(scene, scene.initial.position)
+    height = 0.5 * gap
+    return (
+        f"wall: z = {scene.wall:g} {length_unit}, without slip; lowest: point {k} of rod {rod}, "
+        f"{height:.4g} {length_unit} = {height / scene.epsilon:.4g} epsilon above it"
+    )
 
 
 def describe_limits(limits, time_unit: str) -> list[str]:
@@ -119,6 +133,8 @@ def describe_output(path) -> str:
         for rod in run.rods:
             kind = "closed" if rod.closed else "open"
             lines.append(f"rod {rod.name}: {rod.count} points, {kind}, spacing {rod.spacing:g}")
+        if run.wall is not None:
+            lines.append(f"wall: z = {run.wall:g} {unit['length']}, without slip")
         lines.append(f"fields: {', '.join(run.fields)}")
         lines.append(f"observables: {', '.join(run.observables)}")
         lines += [

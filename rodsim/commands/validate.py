@@ -22,11 +22,11 @@ def validate(ctx, cases, overrides):
             case = load(path, overrides)
             from rodsim.scene.build import build_scene
 
-            build_scene(case)
+            scene = build_scene(case)
         except RodsimError as error:
             click.echo(str(error), err=True)
             code = max(code, error.exit_code)
         else:
-            say_warnings(case)
+            say_warnings(case, scene)
             click.echo(f"{path}: valid")
     ctx.exit(code)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from operator import index
 
 import numpy as np
@@ -110,6 +111,15 @@ class Trajectory:
     def tracers(self) -> np.ndarray:
         """Positions of the tracers in all frames, (T, P, 3); P is 0 where there are none."""
         return self.read("tracers") if "tracers" in self.fields else np.empty((self.frames, 0, 3))
+
+    @property
+    def wall(self) -> float | None:
+        """Height z of the plane wall, or None where there is none."""
+        try:
+            wall = json.loads(self.case_resolved)["fluid"].get("wall")
+            return None if wall is None else float(wall["z"])
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+            return None  # damaged: what needs the case says so
 
     def unit(self, name: str) -> str:
         """Return the unit of a field or observable, e.g. ``g um^2 s^-2``."""

@@ -52,6 +52,8 @@ def simulate(
     started = perf_counter()
     _refuse_sources(case, output)
     scene = build_scene(case)
+    for problem in scene.warnings:
+        listener.warn(str(problem))
     machine, recorder = _prepare(case, scene, force, started, listener)
     from rodsim.run.march import record
     from rodsim.run.recorder import plan_output

@@ -81,20 +81,47 @@ class Watch:
         for name, values in (("position", state.position), ("director", state.director)):
             finite = np.isfinite(values).reshape(-1, values.shape[-1]).all(axis=0)
             if not finite.all():
+                self._stop_on_the_way_to_the_wall(step)
                 self._stop(step.number, step.start, f"{name} is not finite", int(finite.argmin()))
         distance = np.abs(state.position - self.centre).max(axis=0)
         if self._rates:
             self._rates.follow(step)
         if self._below_wall(state):
-            z = state.position[2]
-            what = f"is at z = {z.min():.6g}, not above the wall, z = {self.wall:g}"
-            self._stop(step.number, step.start, what, int(z.argmin()))
+            self._stop_below_the_wall(step)
         if distance.max() > self.farthest:
             what = f"position has left all bounds, {distance.max():.3g} from the start"
             self._stop(step.number, step.start, what, int(distance.argmax()))
 
     def _below_wall(self, state):
-        return self.wall is not None and state.position[2].min() <= self.wall
+        if self.wall is None:
+            return False
+        lost = np.isnan(state.tracer[2]).any() or (state.tracer[2] < self.wall).any()
+        return lost or state.position[2].min() <= self.wall
+
+    def _stop_below_the_wall(self, step):
+        z, tracers = step.end.position[2], step.end.tracer[2]
+        if z.min() <= self.wall:
+            what = f"is at z = {z.min():.6g}, not above the wall, z = {self.wall:g}"
+            self._stop(step.number, step.start, what, int(z.argmin()))
+        k = int(np.argmin(np.nan_to_num(tracers, nan=-np.inf)))  # NaN: a stage was below
+        what = f"tracer {k} has gone through the wall, z = {self.wall:g}, to z = {tracers[k]:.6g}"
+        self._stop(step.number, step.start, what, None)
+
+    def _stop_on_the_way_to_the_wall(self, step):
+        """Raise DivergedError where a stage has come to the wall: its rates are not finite.
+
+        Seen by the velocities at the start of the step.
+        """
+        if self.wall is None:
+            return
+        start, zero = step.start, self.system.zeros()
+        u = self.system.velocities(start.time, start, zero, self.system.zeros())
+        z = start.position[2]
+        ahead = z + step.size * self.system.split(u)[0][2]
+        k = int(ahead.argmin())
+        if ahead[k] <= self.wall:
+            what = f"goes from z = {z[k]:.6g} to the wall, z = {self.wall:g}, or beyond in the step"
+            self._stop(step.number, start, what, k)
 
     def frame(self, number: int) -> None:
         """Remember the last good frame."""

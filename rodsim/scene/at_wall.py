@@ -1,4 +1,4 @@
-"""What a plane wall asks of a scene: all of it lies above."""
+"""What a plane wall asks of a scene: all of it lies above. How far above: the mirrored gap."""
 
 from __future__ import annotations
 
@@ -43,3 +43,12 @@ def near_wall(case, scene) -> Iterator[Problem]:
                 "lubrication is not resolved"
             )
             yield case.source.problem(("rods", rod.name, "shape"), reason)
+
+
+def mirror_gap(scene, position) -> tuple[float, str, int]:
+    """Return the smallest distance of a point (3, N) and its mirror image, 2 (z - h), whose it is.
+
+    With it the rod's name and the number of the point on it. Negative below the wall.
+    """
+    lowest = int(np.argmin(position[2]))
+    return 2.0 * float(position[2, lowest] - scene.wall), *scene.rods.locate(lowest)

@@ -11,7 +11,7 @@ from rodsim.compiled.parts import PartList
 from rodsim.errors import CaseError, FileError
 from rodsim.nodes import lay_out
 from rodsim.registry import kinds
-from rodsim.scene.at_wall import below_wall
+from rodsim.scene.at_wall import below_wall, near_wall
 from rodsim.scene.shapes import FORMULAS, place
 from rodsim.scene.state import Scene, State
 from rodsim.scene.stored import read_shape
@@ -21,7 +21,7 @@ PLANE_TOLERANCE = 1e-12  # of the rod's length, as the case file's contract has 
 
 
 def build_scene(case, stored=None) -> Scene:
-    """Return the scene of a validated case.
+    """Return the scene of a validated case; what looks wrong with it is in its ``warnings``.
 
     ``stored``: called with a rod's name and shape, returns position, director, spacing, closed of
     a rod that is not to be built from its shape, or None.
@@ -59,6 +59,7 @@ def build_scene(case, stored=None) -> Scene:
     )
     if problems := list(below_wall(case, scene)):
         raise CaseError(problems)
+    scene = replace(scene, warnings=tuple(near_wall(case, scene)))
     return with_parts(scene, [part for kind in kinds() for part in kind.build(case, scene)])
 
 

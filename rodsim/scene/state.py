@@ -34,7 +34,11 @@ class State:
 
 @dataclass(frozen=True)
 class Scene:
-    """A case made ready to run. ``wall``: its height, or None where there is none."""
+    """A case made ready to run.
+
+    ``wall``: its height, or None where there is none. ``warnings``: Problems that do not stop a
+    run and that only the geometry could tell.
+    """
 
     rods: Rods
     epsilon: float
@@ -45,6 +49,7 @@ class Scene:
     tracer_groups: dict[str, int]
     initial: State
     wall: float | None = None
+    warnings: tuple = ()
     parts: PartList = NO_PARTS
 
     @property
