@@ -51,7 +51,8 @@ class Watch:
         fixed = not integrator.method.adaptive
         self.remedy = _fixed_step_remedy(case) if fixed else _adaptive_remedy(case)
         self._rates = RateWatch(system, integrator, radius) if fixed and radius else None
-        self.wall, initial = system.scene.wall, system.scene.initial.position
+        self.wall, self.floor = system.scene.wall, system.scene.floor
+        initial = system.scene.initial.position
         self.centre = initial.mean(axis=1, keepdims=True)
         extent = np.abs(initial - self.centre).max()
         self.farthest = FARTHEST * max(extent, system.scene.length_scale)
@@ -95,16 +96,17 @@ class Watch:
     def _below_wall(self, state):
         if self.wall is None:
             return False
-        lost = np.isnan(state.tracer[2]).any() or (state.tracer[2] < self.wall).any()
-        return lost or state.position[2].min() <= self.wall
+        above = state.tracer[2] >= self.floor  # False for NaN
+        return state.position[2].min() <= self.wall or not above.all()
 
     def _stop_below_the_wall(self, step):
         z, tracers = step.end.position[2], step.end.tracer[2]
         if z.min() <= self.wall:
             what = f"is at z = {z.min():.6g}, not above the wall, z = {self.wall:g}"
             self._stop(step.number, step.start, what, int(z.argmin()))
-        k = int(np.argmin(np.nan_to_num(tracers, nan=-np.inf)))  # NaN: a stage was below
-        what = f"tracer {k} has gone through the wall, z = {self.wall:g}, to z = {tracers[k]:.6g}"
+        k = int(np.argmin(tracers >= self.floor))
+        before = step.start.tracer[2, k]
+        what = f"tracer {k} goes from z = {before:.6g} through the wall, z = {self.wall:g}"
         self._stop(step.number, step.start, what, None)
 
     def _stop_on_the_way_to_the_wall(self, step):

@@ -23,7 +23,7 @@ def below_wall(case, scene) -> Iterator[Problem]:
             reason = f"point {k} is at z = {lowest:.6g}: must be above the wall, z = {scene.wall:g}"
             yield case.source.problem(("rods", rod.name, "shape"), reason)
     tracer = scene.initial.tracer[2]
-    if (tracer < scene.wall).any():
+    if (tracer < scene.floor).any():
         reason = f"one is at z = {tracer.min():.6g}, below the wall, z = {scene.wall:g}"
         yield case.source.problem(("tracers",), reason)
 
