@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from rodsim.analysis.grid import AXES
+from rodsim.analysis.wall import piece_of_wall
 from rodsim.plotting import style
 from rodsim.plotting.camera import make_camera
 from rodsim.plotting.flow import (
@@ -22,7 +23,7 @@ from rodsim.plotting.flow import (
 )
 from rodsim.plotting.rod import draw_rods
 from rodsim.plotting.shapes import BAR, FRAME, annotate, set_stage
-from rodsim.plotting.wall import draw_wall, mark_wall, piece_of_wall, with_wall
+from rodsim.plotting.wall import draw_wall, mark_wall, with_wall
 
 WIDTH, HEIGHT = 7.0, 7.0  # inches
 BAND = 0.03  # of the longest side: what is seen of a wall's far side

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rodsim.analysis.wall import piece_of_wall
 from rodsim.plotting import style
 from rodsim.plotting.camera import AXES, Camera
 from rodsim.plotting.rod import draw_rods, draw_tracers
-from rodsim.plotting.wall import draw_wall, piece_of_wall, with_wall
+from rodsim.plotting.wall import draw_wall, with_wall
 
 WIDTH, HEIGHT = 8.0, 5.4  # inches that the panels of a figure may take
 TITLE, FRAME, BAR = 0.3, 0.55, 0.9  # inches for a panel's title, for what is below, a colour bar
