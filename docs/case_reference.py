@@ -36,6 +36,7 @@ SECTIONS = {
     "Fluid": "fluid",
     "Spacings": "fluid.epsilon with spacings",
     "Radius": "fluid.epsilon with radius",
+    "Wall": "fluid.wall",
     "Rod": "rods.NAME",
     "Moduli": "rods.NAME.moduli",
     "Straight": "rods.NAME.shape, kind: straight",
