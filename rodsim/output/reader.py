@@ -36,6 +36,7 @@ class Trajectory:
     planned : times of all frames the run is to have.
     status : running, finished, stopped or diverged. version, created, format : of the file.
     case_source, case_resolved : text. overrides, resumes : lists of text.
+    wall : height of a plane wall, or None.
     units : names of the units of ``length``, ``mass``, ``time``. runtime : what the run has cost.
     """
 
