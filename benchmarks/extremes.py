@@ -126,6 +126,16 @@ def pair(gap):
     return case
 
 
+def at_wall(base, heights, turn, **changes):
+    """A scene lying so many epsilon above a plane wall, or standing where ``turn`` is 0."""
+    ((name, _),) = base["rods"].items()
+    return changed(base, {
+        "fluid.wall": {"z": 0.0},
+        f"rods.{name}.shape.origin": [0, 0, heights * base["fluid"]["epsilon"]],
+        f"rods.{name}.shape.rotate": {"axis": [1, 0, 0], "degrees": turn},
+    } | {path.replace("__", "."): value for path, value in changes.items()})  # fmt: skip
+
+
 def ring_twist(omega_r0):
     """A ring with total intrinsic twist 2 pi omega_r0; unstable above about 1.7345."""
     seeded = ["1e-3*cos(0.8*s)", 0, omega_r0 / 2.5]
@@ -200,6 +210,16 @@ SCENES = {
         "a triad turned by 180 degrees": from_table(turn=180.0),
     },
     "neighbours": {"two rods 0.1 epsilon apart": pair(0.1), "on one line": pair(0.0)},
+    "at a wall": {
+        "2 epsilon above": at_wall(ROD, 2, -90),
+        "0.66 epsilon above": at_wall(ROD, 0.66, -90),
+        "0.66 epsilon above, moduli x 1e2": at_wall(stiffer(100.0), 0.66, -90),
+        "0.1 epsilon above": at_wall(ROD, 0.1, -90),
+        "upright, 0.66 epsilon above": at_wall(ROD, 0.66, 0),
+        "falling on it, 1000 of its own bending forces": at_wall(ROD, 3, -80, rods__rod__loads={
+            "weight": {"along": "all", "force": [0, 0, -1000 * 3.5e-3 / LENGTH**3]}}),
+        "flagellum, 2 epsilon above": at_wall(TAIL, 2, -90),
+    },
     "ring": {"just below its instability": ring_twist(1.70),
              "just above it": ring_twist(1.80)},
     "acting": {

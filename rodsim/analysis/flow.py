@@ -27,6 +27,8 @@ class Flow:
 def flow_at(replay: Replay, frame: int, grid: Grid, raw=False) -> Flow:
     """Return the flow that the rods of a frame drive, eqs. (61), (62), at the points of a grid.
 
+    NaN below a wall.
+
     ``raw``: by the loads of the stored state as it is, see :meth:`Replay.settled_sources`.
     """
     sources = replay.sources(frame) if raw else replay.settled_sources(frame)
@@ -55,7 +57,8 @@ def tracer_paths(replay: Replay, seeds, first: int, last: int, progress=None) ->
     frame, so many that nothing moves by more than 0.2 epsilon in one. Between two frames the
     places of the rods' points and their forces and torques change linearly, an error of second
     order in the interval of the frames. (States in between, and their loads, would do worse: a
-    rod is so stiff that what is left of the frames' own error becomes a large force.)
+    rod is so stiff that what is left of the frames' own error becomes a large force.) What comes
+    below a wall goes on as NaN.
     """
     position, miss = np.empty((last - first + 1, len(seeds), 3)), np.empty(last - first)
     position[0] = seeds
@@ -64,8 +67,10 @@ def tracer_paths(replay: Replay, seeds, first: int, last: int, progress=None) ->
         before, after = after, replay.settled_sources(first + row + 1)
         begin, end = replay.run.time[first + row : first + row + 2]
         moved = _advance(before, after, begin, end, np.vstack([position[row], before.position.T]))
+        moved[moved[:, 2] < replay.scene.floor] = np.nan
         position[row + 1] = moved[: len(seeds)]
-        miss[row] = np.abs(moved[len(seeds) :] - after.position.T).max()
+        missed = np.abs(moved[len(seeds) :] - after.position.T).max()
+        miss[row] = np.inf if np.isnan(missed) else missed
         if progress:
             progress.update((row + 1) / (last - first), f"t = {end:.4g}")
     return Paths(replay.run.time[first : last + 1], position, miss)
@@ -89,7 +94,8 @@ def _advance(before, after, begin, end, x):
 
 def _steps(before, after, begin, end, x):
     """Return the number of steps between two frames, from the fastest point in both."""
-    fastest = max(np.linalg.norm(s.velocity(x), axis=1).max() for s in (before, after))
+    speeds = [np.linalg.norm(s.velocity(x), axis=1) for s in (before, after)]
+    fastest = np.nanmax(speeds)
     steps = fastest * (end - begin) / (FINE * before.scene.epsilon)
     if not steps < MOST_STEPS:
         raise UsageError(

@@ -58,24 +58,32 @@ class Grid:
         return np.stack(mesh, axis=-1).reshape(-1, 3)
 
 
-def make_grid(text: str, position: np.ndarray, resolution=None, default=RESOLUTION) -> Grid:
+def make_grid(
+    text: str, position: np.ndarray, resolution=None, default=RESOLUTION, floor=None
+) -> Grid:
     """Return the grid that a text describes, around rods with ``position`` (N, 3).
 
     ``resolution``: points along the longest side, where the text does not say; if None, ``default``
-    of the number of axes. Raises UsageError.
+    of the number of axes. ``floor``: height of a wall; a grid that follows the rods begins on it
+    where its margin would reach below. Raises UsageError, also where all of a grid is below.
     """
     kind, _, rest = text.strip().partition(":")
     if kind not in ("line", "plane", "box"):
-        return _not_too_large(text, _explicit(text))
+        return _checked(text, _explicit(text), floor)
     letters, _, fixed = rest.partition("@")
     middle, extent = _middle_and_extent(position)
     axes = _axes(text, kind, letters, extent)
     at = _fixed(text, fixed, axes, middle)
     grid = _around(axes, at, middle, extent, resolution or default[len(axes)])
-    return _not_too_large(text, grid)
+    if floor is not None and grid.shape[2] > 1 and grid.z[0] < floor:
+        count = int(np.ceil((grid.z[-1] - floor) / grid.step[2])) + 1
+        grid = Grid(grid.x, grid.y, floor + grid.step[2] * np.arange(count))
+    return _checked(text, grid, floor)
 
 
-def _not_too_large(text, grid):
+def _checked(text, grid, floor):
+    if floor is not None and grid.z[-1] < floor:
+        raise UsageError(f"grid {text!r}: all of it lies below the wall, z = {floor:g}")
     if np.prod(grid.shape, dtype=float) > MOST_POINTS:
         raise UsageError(f"grid {text!r}: more than {MOST_POINTS} points")
     return grid

@@ -95,7 +95,7 @@ def _flow(run, at, grid_text, resolution, path, colour, arrows, raw, quiet):
 
     replay = Replay(run)
     frame = _frame(run, at, run.frames - 1, quiet)
-    grid = make_grid(grid_text, run.read("position", frame), resolution)
+    grid = make_grid(grid_text, run.read("position", frame), resolution, floor=run.wall)
     flow = flow_at(replay, frame, grid, raw)
     if replay.without_pressure and not quiet:
         names = ", ".join(replay.without_pressure)
@@ -123,9 +123,12 @@ def _tracers(run, at, until, grid_text, resolution, path, quiet):
         from rodsim.errors import UsageError
 
         raise UsageError("tracers need a time --until after the one --at which they start")
-    grid = make_grid(grid_text, run.read("position", first), resolution, SEEDS)
+    grid = make_grid(grid_text, run.read("position", first), resolution, SEEDS, run.wall)
+    seeds = grid.points[grid.points[:, 2] >= replay.scene.floor]
+    if len(seeds) < len(grid.points) and not quiet:
+        click.echo(f"{len(grid.points) - len(seeds)} tracers would start below the wall", err=True)
     with make_progress("tracers", quiet) as progress:
-        paths = tracer_paths(replay, grid.points, first, last, progress)
+        paths = tracer_paths(replay, seeds, first, last, progress)
     _say_miss(run, replay, paths, quiet)
     if path.suffix in STILLS:
         from rodsim.plotting.flow_pictures import plot_paths

@@ -14,6 +14,7 @@ from rodsim.commands.groups import (
 from rodsim.errors import FileError
 from rodsim.run.ending import Motion, gap_sentence
 from rodsim.run.recorder import frame_times
+from rodsim.scene.at_wall import mirror_gap
 from rodsim.scene.build import build_scene
 from rodsim.scene.restore import restore_case, stored_diameter
 from rodsim.units import unit_text
@@ -43,6 +44,8 @@ def describe_case(case, refuse=False) -> str:
         f"= {scene.epsilon / scene.rods.spacing[0]:.4g} spacings"
     )
     lines += describe_start(scene, system, unit.names)
+    if scene.wall is not None:
+        lines.append(describe_wall(scene, unit.length))
     if scene.planar:
         lines.append("planar: only u_y, u_z and w_x are computed")
     if scene.parts.external:
@@ -65,6 +68,16 @@ def _acting(parts) -> str:
     """Return the names of all parts, in their order, and which of them depend on time."""
     driven = {part.name: part.row.driven for part in parts}
     return ", ".join(f"{name} (driven)" if yes else name for name, yes in driven.items())
+
+
+def describe_wall(scene, length_unit: str) -> str:
+    """Return the line on the wall of a scene: where it is, and how far above it the rods start."""
+    gap, rod, k = mirror_gap(scene, scene.initial.position)
+    height = 0.5 * gap
+    return (
+        f"wall: z = {scene.wall:g} {length_unit}, without slip; lowest: point {k} of rod {rod}, "
+        f"{height:.4g} {length_unit} = {height / scene.epsilon:.4g} epsilon above it"
+    )
 
 
 def describe_limits(limits, time_unit: str) -> list[str]:
@@ -173,6 +186,8 @@ def describe_output(path) -> str:
         if len(run.rods) > MOST_RODS:
             lines.append(f"and {len(run.rods) - MOST_RODS} more rods")
         lines += _endings(run)
+        if run.wall is not None:
+            lines.append(f"wall: z = {run.wall:g} {unit['length']}, without slip")
         lines.append(f"fields: {', '.join(run.fields)}")
         lines.append(f"observables: {', '.join(run.observables)}")
         lines += [

@@ -10,19 +10,19 @@ from rodsim.output.vtkhdf import VERSION, add_cells, add_steps
 from rodsim.progress import Silent
 
 
-def write_polydata(path, times, frames, kind, cells, cell_data=None, progress=None) -> None:
+def write_polydata(path, times, frames, cells, cell_data=None, progress=None) -> None:
     """Write moving points as a file of its own, frame by frame; raises FileError.
 
     times (T,). ``frames`` yields, for each time, positions (N, 3) and point data: name -> (N,) or
-    (N, 3). ``kind`` is ``Lines`` or ``Vertices``; ``cells``: the nodes of each, the same at all
-    times; ``cell_data``: name -> one number per cell.
+    (N, 3). ``cells``: by kind, ``Lines`` and others of VTK in its order, the nodes of each cell,
+    the same at all times; ``cell_data``: name -> one number per cell.
     """
     progress = progress or Silent()
     with replacing(path) as temporary, h5py.File(temporary, "w") as file:
         root = file.create_group("VTKHDF")
         root.attrs["Version"] = np.array(VERSION, dtype=np.int64)
         root.attrs["Type"] = np.bytes_("PolyData")
-        add_cells(root, kind, cells)
+        add_cells(root, cells)
         for number, (position, data) in enumerate(frames):
             if number == 0:
                 _create(root, len(times), position, data, cell_data or {})

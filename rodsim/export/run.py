@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import math
 
 import numpy as np
 
 from rodsim.analysis.strain import bend, strain_twist
+from rodsim.analysis.wall import piece_of_wall
 from rodsim.errors import FileError
 from rodsim.export.polydata import write_polydata
 from rodsim.export.tables import component_heads, head, write_csv, write_npz
@@ -20,7 +22,8 @@ def export_run(run, path, *, every=1, tracers=False, radius=None, progress=None)
 
     ``tracers``: the fluid markers instead of the rods (an .npz always has both). ``radius``: of
     the tubes in ParaView, a length; by default ``epsilon e^(-1/2)``, the radius of the cylinder
-    that drags the fluid along as the rod does. Raises FileError.
+    that drags the fluid along as the rod does. With the rods an .vtkhdf has a piece of the wall,
+    where there is one, as a polygon of four points more, with NaN for data. Raises FileError.
     """
     frames = range(0, run.frames, every)
     if not frames:
@@ -35,10 +38,14 @@ def export_run(run, path, *, every=1, tracers=False, radius=None, progress=None)
     elif tracers:
         export_paths(path, run.time[list(frames)], _markers(run, frames), progress)
     else:
-        radius = radius or tube_radius(run)
-        lines, numbers = rod_lines(run.rods), {"rod": np.arange(len(run.rods))}
-        moving = (_frame(run, frame, radius) for frame in frames)
-        write_polydata(path, run.time[list(frames)], moving, "Lines", lines, numbers, progress)
+        radius, wall = radius or tube_radius(run), _wall(run, frames)
+        cells, rods = {"Lines": rod_lines(run.rods)}, list(range(len(run.rods)))
+        if len(wall):
+            cells |= {"Polygons": [list(range(run.points, run.points + len(wall)))]}
+            rods.append(-1)
+        moving = (_with(wall, *_frame(run, frame, radius)) for frame in frames)
+        numbers = {"rod": np.array(rods)}
+        write_polydata(path, run.time[list(frames)], moving, cells, numbers, progress)
 
 
 def export_paths(path, time, paths, progress=None) -> None:
@@ -46,7 +53,7 @@ def export_paths(path, time, paths, progress=None) -> None:
     first = next(paths := iter(paths))
     vertices = [[number] for number in range(len(first))]
     frames = ((position, {}) for position in (first, *paths))
-    write_polydata(path, time, frames, "Vertices", vertices, progress=progress)
+    write_polydata(path, time, frames, {"Vertices": vertices}, progress=progress)
 
 
 def tube_radius(run) -> float:
@@ -71,6 +78,24 @@ def _frame(run, frame, radius):
         elif name not in ("position", "tracers"):
             data[name] = run.read(name, frame)
     return run.read("position", frame), data
+
+
+def _wall(run, frames):
+    """Return the corners (4, 3) of the wall under the rods of all frames, (0, 3) without one."""
+    if run.wall is None:
+        return np.zeros((0, 3))
+    seen = (run.read("position", frame) for frame in frames)
+    ends = np.concatenate([(position.min(axis=0), position.max(axis=0)) for position in seen])
+    return piece_of_wall(ends, run.wall, math.inf)
+
+
+def _with(wall, position, data):
+    """Return positions and point data with those of the wall's corners, NaN, after them."""
+    joined = {}
+    for name, values in data.items():
+        nothing = np.full((len(wall), *values.shape[1:]), np.nan)
+        joined[name] = np.concatenate([values, nothing])
+    return np.concatenate([position, wall]), joined
 
 
 def _arc(run):

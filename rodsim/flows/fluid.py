@@ -42,8 +42,7 @@ def _pressure(scene):
         out = np.zeros(points.shape[1])
         kernel = home.pressure_kernel(BLOBS[scene.blob])
         kernel(points, sources, loads, scene.epsilon, *height, out)
-        if height:
-            out[points[2] < scene.wall] = np.nan
+        out[points[2] < scene.floor] = np.nan
         return out
 
     return pressure

@@ -28,6 +28,7 @@ from functools import lru_cache
 import numpy as np
 from numba import prange
 
+from rodsim.compiled.constants import ON_WALL
 from rodsim.compiled.flags import inline, parallel_kernel
 from rodsim.compiled.kernels import part
 from rodsim.flows.blobs import (
@@ -190,7 +191,7 @@ def _tracers_part(blob):
         else:
             FLOW_9(points, state[0], loads, epsilon, viscosity, height, out)
         for i in range(points.shape[1]):
-            if points[2, i] < height:
+            if points[2, i] < height - ON_WALL * epsilon:
                 out[:, i] = np.nan
 
     return move_tracers

@@ -241,4 +241,6 @@ class RKC:
         f1 = self.system.rate(state.time + trial, state, trial * f0, self.system.zeros())
         n, w = self.system.rod_size, self.system.weights  # a guess: one norm over all rods will do
         change = trial * np.sqrt(np.mean(np.square((f1 - f0)[:n] * w[:n]))) / self.tolerance
+        if not math.isfinite(change):  # as where even the trial comes to a wall
+            return 0.1 * trial
         return min(end, 0.1 * trial / math.sqrt(change) if change > 0.0 else end)

@@ -37,6 +37,7 @@ class Trajectory:
     status : running, finished, stopped or diverged. version, created, format : of the file.
     case_source, case_resolved : text. overrides, resumes : lists of text.
     inputs : digests of the files the case named, as JSON text, "" where it named none.
+    wall : height of a plane wall, or None.
     units : names of the units of ``length``, ``mass``, ``time``. runtime : what the run has cost.
     """
 
@@ -118,6 +119,15 @@ class Trajectory:
     def tracers(self) -> np.ndarray:
         """Positions of the tracers in all frames, (T, P, 3); P is 0 where there are none."""
         return self.read("tracers") if "tracers" in self.fields else np.empty((self.frames, 0, 3))
+
+    @property
+    def wall(self) -> float | None:
+        """Height z of the plane wall, or None where there is none."""
+        try:
+            wall = json.loads(self.case_resolved)["fluid"].get("wall")
+            return None if wall is None else float(wall["z"])
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+            return None  # damaged: what needs the case says so
 
     def unit(self, name: str) -> str:
         """Return the unit of a field or observable, e.g. ``g um^2 s^-2``."""

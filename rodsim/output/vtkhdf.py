@@ -24,7 +24,7 @@ def build_view(file: h5py.File, plan: Plan) -> None:
     root.attrs["Version"] = np.array(VERSION, dtype=np.int64)
     root.attrs["Type"] = np.bytes_("PolyData")
     root["NumberOfPoints"] = np.array([plan.points], dtype=np.int64)
-    add_cells(root, "Lines", rod_lines(plan.rods))
+    add_cells(root, {"Lines": rod_lines(plan.rods)})
     root["CellData/rod"] = np.arange(len(plan.rods), dtype=np.int64)
     data = root.create_group("PointData")
     for series in plan.fields_stored():
@@ -84,10 +84,10 @@ def rod_lines(rods) -> list[list[int]]:
     ]
 
 
-def add_cells(root: h5py.Group, kind: str, cells: list[list[int]]) -> None:
-    """Add the groups of all kinds of cells; only ``kind`` has some, given by their nodes."""
+def add_cells(root: h5py.Group, cells: dict[str, list[list[int]]]) -> None:
+    """Add the groups of all kinds of cells; some kinds have cells, given by their nodes."""
     for name in CELLS:
-        nodes = cells if name == kind else []
+        nodes = cells.get(name, [])
         group = root.create_group(name)
         connectivity = np.array([node for cell in nodes for node in cell], dtype=np.int64)
         group["NumberOfCells"] = np.array([len(nodes)], dtype=np.int64)

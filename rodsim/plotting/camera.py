@@ -28,12 +28,12 @@ class Camera:
         return position @ self.matrix.T
 
 
-def make_camera(view: str, position: np.ndarray) -> Camera:
+def make_camera(view: str, position: np.ndarray, upright=False) -> Camera:
     """Return the camera for positions (..., 3).
 
     ``xy`` and the like look straight at that plane, the first axis to the right; ``3d`` has the
     longest extent to the right, the next one up, and is turned a little; ``auto`` is ``3d``, or
-    straight at the plane that everything lies in.
+    straight at the plane that everything lies in. ``upright``: z points up wherever it is seen.
     """
     if view not in VIEWS:
         raise UsageError(f"view must be one of {', '.join(VIEWS)}, not {view!r}")
@@ -42,6 +42,10 @@ def make_camera(view: str, position: np.ndarray) -> Camera:
     order = np.argsort(-extent, kind="stable")
     if view == "auto" and extent[order[2]] <= 1e-9 * extent[order[0]] < extent[order[1]]:
         view = AXES[order[0]] + AXES[order[1]]
+        view = view[::-1] if upright and view[0] == "z" else view
+    if upright:
+        order = [*(axis for axis in order if axis != 2), 2]
+        order = [order[0], 2, order[1]]
     if view in ("auto", "3d"):
         return Camera(_tilted() @ _frame(order[0], order[1]))
     return Camera(_frame(AXES.index(view[0]), AXES.index(view[1])), view)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 
 from rodsim.analysis.grid import AXES
+from rodsim.analysis.wall import piece_of_wall
 from rodsim.plotting import style
 from rodsim.plotting.camera import make_camera
 from rodsim.plotting.flow import (
@@ -21,8 +23,10 @@ from rodsim.plotting.flow import (
 )
 from rodsim.plotting.rod import draw_rods
 from rodsim.plotting.shapes import BAR, FRAME, annotate, set_stage
+from rodsim.plotting.wall import draw_wall, mark_wall, with_wall
 
 WIDTH, HEIGHT = 7.0, 7.0  # inches
+BAND = 0.03  # of the longest side: what is seen of a wall's far side
 ROD = (0.75, 0.22, 0.1, 1.0)
 
 
@@ -30,8 +34,9 @@ def plot_flow(flow, scene, out, colour="speed", arrows=False) -> None:
     """Draw a flow to a file: profiles along a line, a map of a plane, or arrows in a box.
 
     ``flow``: :class:`~rodsim.analysis.flow.Flow`. ``scene``: position, director, rods, units,
-    thickness and title of what drives it.
+    thickness, wall and title of what drives it. What lies below a wall is left out.
     """
+    flow = _in_fluid(flow)
     varying = flow.grid.varying
     if len(varying) == 3:
         figure = _box(flow, scene)
@@ -45,11 +50,14 @@ def plot_flow(flow, scene, out, colour="speed", arrows=False) -> None:
 
 def plot_paths(time, paths, scene, out) -> None:
     """Draw the paths of tracers to a file, with the rods at the end."""
-    camera = make_camera("auto", np.concatenate([paths.reshape(-1, 3), scene.position]))
-    seen = camera.project(np.concatenate([paths.reshape(-1, 3), scene.position]))[:, :2]
+    points = np.concatenate([paths[np.isfinite(paths).all(axis=2)], scene.position])
+    camera = make_camera("auto", points, upright=scene.wall is not None)
+    wall = piece_of_wall(points, scene.wall)
+    seen = camera.project(with_wall(points, camera, wall))[:, :2]
     low, high = seen.min(axis=0), seen.max(axis=0)
     bounds = np.array([low, high]) + 0.05 * (high - low).max() * np.array([[-1], [1]])
     figure, axis = _stage(camera, bounds, scene)
+    draw_wall(axis, camera, wall)
     colours = style.colour_map(style.COLOURS)
     draw_paths(axis, camera, time, paths, colours)
     _draw_rods(axis, camera, scene)
@@ -59,6 +67,17 @@ def plot_paths(time, paths, scene, out) -> None:
     )  # fmt: skip
     figure.suptitle(_title(scene, None), fontsize=11)
     style.save(figure, out)
+
+
+def _in_fluid(flow):
+    """Return a flow without the planes of its grid that lie below a wall."""
+    grid = flow.grid
+    there = np.isfinite(flow.velocity[:, 0]).reshape(grid.shape).any(axis=(0, 1))
+    if there.all():
+        return flow
+    keep = np.tile(there, len(grid.x) * len(grid.y))
+    above = replace(grid, z=grid.z[there])
+    return replace(flow, grid=above, velocity=flow.velocity[keep], pressure=flow.pressure[keep])
 
 
 def _title(scene, time):
@@ -101,7 +120,8 @@ def _draw_rods(axis, camera, scene):
 
 def _plane(flow, scene, colour, arrows):
     grid = flow.grid
-    a, b = sorted(grid.varying, key=lambda axis: -grid.shape[axis] * grid.step[axis])
+    upright = scene.wall is not None  # z up
+    a, b = sorted(grid.varying, key=lambda k: (upright and k == 2, -grid.shape[k] * grid.step[k]))
     fixed = ({0, 1, 2} - {a, b}).pop()
     coordinates = grid.x, grid.y, grid.z
 
@@ -113,6 +133,9 @@ def _plane(flow, scene, colour, arrows):
     camera = make_camera(AXES[a] + AXES[b], scene.position)
     right, up = coordinates[a], coordinates[b]
     bounds = np.array([[right[0], up[0]], [right[-1], up[-1]]])
+    wall = _wall_below(flow, scene)
+    if wall is not None and fixed != 2:  # room for a line with its far side
+        bounds[0, 1] = wall - BAND * np.ptp(bounds, axis=0).max()
     figure, axis = _stage(camera, bounds, scene)
     text = style.label(colour, _unit(scene, colour))
     if colour == "speed":
@@ -122,11 +145,21 @@ def _plane(flow, scene, colour, arrows):
         most = np.percentile(np.abs(shown), 99.0) or 1.0
         limits = -most, most
     draw_plane(axis, right, up, velocity[..., [a, b]], shown, text, colours, limits, arrows)
+    set_stage(axis, camera, bounds)
+    if wall is not None:
+        draw_wall(axis, camera, piece_of_wall(grid.points, wall))
     _draw_rods(axis, camera, scene)
     where = style.label(f"{AXES[fixed]} = {coordinates[fixed][0]:.4g}", "")
     unit = style.pretty_unit(scene.units["length"])
     axis.set_title(f"plane {where} {unit}", fontsize=9, loc="left", pad=3)
     return figure
+
+
+def _wall_below(flow, scene):
+    """Return the height of a wall that a grid comes as close to as its step, or None."""
+    grid = flow.grid
+    near = scene.wall is not None and grid.z[0] - scene.wall <= grid.step[2] * (1.0 + 1e-9)
+    return scene.wall if near and grid.shape[2] > 1 else None
 
 
 def _line(flow, scene):
@@ -143,6 +176,10 @@ def _line(flow, scene):
     draw_line_profile(
         bottom, coordinates[along], pressure, style.label("pressure", _unit(scene, "pressure"))
     )
+    if (wall := _wall_below(flow, scene)) is not None:
+        for axis in (top, bottom):
+            axis.set_xlim(left=wall - BAND * np.ptp(grid.z))
+            mark_wall(axis, wall, upright=True)
     unit = scene.units["length"]
     bottom.set_xlabel(style.label(AXES[along], unit))
     others = [f"{AXES[i]} = {coordinates[i][0]:.4g}" for i in range(3) if i != along]
@@ -159,10 +196,12 @@ def _box(flow, scene):
         values.reshape(*grid.shape, 3)[pick].reshape(-1, 3)
         for values in (grid.points, flow.velocity)
     )
-    camera = make_camera("3d", grid.points)
-    seen = camera.project(grid.points)[:, :2]
+    camera = make_camera("3d", grid.points, upright=scene.wall is not None)
+    wall = piece_of_wall(grid.points, scene.wall)
+    seen = camera.project(with_wall(grid.points, camera, wall))[:, :2]
     bounds = np.array([seen.min(axis=0), seen.max(axis=0)])
     figure, axis = _stage(camera, bounds, scene)
+    draw_wall(axis, camera, wall)
     top = float(np.linalg.norm(velocity, axis=1).max())
     draw_box(axis, camera, points, velocity, light_map("YlGnBu", 0.3, 1.0), top)
     figure.colorbar(
@@ -180,6 +219,7 @@ def scene_to_draw(run, frame, title, thickness):
         director=run.read("director", frame),
         rods=run.rods,
         units=run.units,
+        wall=run.wall,
         title=title,
         thickness=thickness,
     )

@@ -107,7 +107,7 @@ def _frames(run, wanted, at):
 def _look(run, chosen, view, kind, colour):
     """Return the camera, the shapes and the key of the colours for some frames."""
     position = np.array([run.read("position", frame) for frame in chosen])
-    camera = make_camera(view, position)
+    camera = make_camera(view, position, upright=run.wall is not None)
     kind = kind or ("line" if camera.flat or "director" not in run.fields else "tube")
     if kind not in KINDS:
         raise UsageError(f"style must be one of {', '.join(KINDS)}, not {kind!r}")
@@ -120,7 +120,7 @@ def _look(run, chosen, view, kind, colour):
         tracers = np.array([run.read("tracers", frame) for frame in chosen])
     shapes = Shapes(
         run.time[chosen], position, director, run.rods, colours, tracers, run.units,
-        thickness(run), kind,
+        thickness(run), kind, run.wall,
     )  # fmt: skip
     return camera, shapes, key
 

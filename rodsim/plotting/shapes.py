@@ -6,9 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rodsim.analysis.wall import piece_of_wall
 from rodsim.plotting import style
 from rodsim.plotting.camera import AXES, Camera
 from rodsim.plotting.rod import draw_rods, draw_tracers
+from rodsim.plotting.wall import draw_wall, with_wall
 
 WIDTH, HEIGHT = 8.0, 5.4  # inches that the panels of a figure may take
 TITLE, FRAME, BAR = 0.3, 0.55, 0.9  # inches for a panel's title, for what is below, a colour bar
@@ -21,6 +23,7 @@ class Shapes:
 
     colours : rgba for each frame and rod, (4,) or (S, 4). tracers : (T, P, 3), P may be 0.
     units : names of the units of ``length`` and ``time``. size : diameter or width of the rods.
+    wall : height of a wall, or None.
     """
 
     time: np.ndarray
@@ -32,9 +35,11 @@ class Shapes:
     units: dict
     size: float
     kind: str
+    wall: float | None = None
 
     def draw(self, axis, camera: Camera, frame: int):
-        """Draw one frame on an axis; return the axis."""
+        """Draw one frame on an axis that has its limits; return the axis."""
+        draw_wall(axis, camera, piece_of_wall(self._points(), self.wall))
         if self.tracers.shape[1]:
             draw_tracers(axis, camera, self.tracers[frame])
         director = None if self.director is None else self.director[frame]
@@ -43,12 +48,16 @@ class Shapes:
 
     def bounds(self, camera: Camera) -> np.ndarray:
         """Return [[left, bottom], [right, top]] of all frames, with a margin."""
-        points = np.concatenate([self.position, self.tracers], axis=1)
-        seen = camera.project(points)[..., :2].reshape(-1, 2)
+        points = self._points()
+        shown = with_wall(points, camera, piece_of_wall(points, self.wall))
+        seen = camera.project(shown)[:, :2]
         low, high = seen.min(axis=0), seen.max(axis=0)
-        extent = (high - low).max() or np.ptp(points, axis=(0, 1)).max() or 1.0  # seen end on
+        extent = (high - low).max() or np.ptp(points, axis=0).max() or 1.0  # seen end on
         space = MARGIN * extent + (self.size if self.kind != "line" else 0.0)
         return np.array([low - space, high + space])
+
+    def _points(self):
+        return np.concatenate([self.position, self.tracers], axis=1).reshape(-1, 3)
 
     def stamp(self, frame: int) -> str:
         """Return the time of a frame with its unit."""

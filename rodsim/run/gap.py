@@ -9,6 +9,7 @@ import sys
 import warnings
 
 from rodsim.run.ending import gap_sentence
+from rodsim.scene.at_wall import mirror_gap
 from rodsim.scene.gap import closest_pair
 from rodsim.scene.neighbours import any_pair_counts, excluded, hydrodynamic_diameter
 
@@ -33,8 +34,13 @@ class Gap:
             return {}
         distance, first, second = closest_pair(state.position, *self._rods)
         distance = min(distance, sys.float_info.max)  # of rods so far apart that squares overflow
+        who = self._pair
+        if self.scene.wall is not None:
+            mirrored, rod, point = mirror_gap(self.scene, state.position)
+            if mirrored < distance:
+                distance, first, second, who = mirrored, rod, point, self._at_wall
         if distance < self.diameter <= self.smallest:
-            self.notify(self._warning(distance, first, second, state.time))
+            self.notify(self._warning(who(first, second), distance, state.time))
         if distance < self.smallest:
             self.smallest, self.time = distance, state.time
         return {"gap": distance}
@@ -50,13 +56,18 @@ class Gap:
         """Return how small it got, or an empty text."""
         return gap_sentence(self.smallest, self.time, self.diameter, self.units)
 
-    def _warning(self, distance, first, second, time):
+    def _at_wall(self, rod, point):
+        return f"rod '{rod}' comes closer to the wall than its radius: its point {point} and image"
+
+    def _pair(self, first, second):
         (rod, i), (other, j) = (self.scene.rods.locate(point) for point in (first, second))
-        who = (
+        return (
             f"rod '{rod}' comes closer to itself than it is thick: its points {i} and {j}"
             if rod == other
             else f"rods '{rod}' and '{other}' come closer than they are thick: points {i} and {j}"
         )
+
+    def _warning(self, who, distance, time):
         length, unit = self.units["length"], self.units["time"]
         return (
             f"{who} are {distance:.3g} {length} apart at t = {time:.6g} {unit}; to the fluid a rod "

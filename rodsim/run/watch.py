@@ -56,7 +56,8 @@ class Watch:
         fixed = not integrator.method.adaptive
         self.remedy = (_fixed_step_remedy if fixed else _adaptive_remedy)(case, system)
         self._rates = RateWatch(system, integrator, fastest) if fixed and fastest else None
-        self.wall, initial = system.scene.wall, system.scene.initial.position
+        self.wall, self.floor = system.scene.wall, system.scene.floor
+        initial = system.scene.initial.position
         self.centre = initial.mean(axis=1, keepdims=True)
         extent = np.abs(initial - self.centre).max()
         self.farthest = FARTHEST * max(extent, system.scene.length_scale)
@@ -86,20 +87,48 @@ class Watch:
         for name, values in (("position", state.position), ("director", state.director)):
             finite = np.isfinite(values).reshape(-1, values.shape[-1]).all(axis=0)
             if not finite.all():
+                self._stop_on_the_way_to_the_wall(step)
                 self._stop(step.number, step.start, f"{name} is not finite", int(finite.argmin()))
         distance = np.abs(state.position - self.centre).max(axis=0)
         if self._rates:
             self._rates.follow(step)
         if self._below_wall(state):
-            z = state.position[2]
-            what = f"is at z = {z.min():.6g}, not above the wall, z = {self.wall:g}"
-            self._stop(step.number, step.start, what, int(z.argmin()))
+            self._stop_below_the_wall(step)
         if distance.max() > self.farthest:
             what = f"position has left all bounds, {distance.max():.3g} from the start"
             self._stop(step.number, step.start, what, int(distance.argmax()))
 
     def _below_wall(self, state):
-        return self.wall is not None and state.position[2].min() <= self.wall
+        if self.wall is None:
+            return False
+        above = state.tracer[2] >= self.floor  # False for NaN
+        return state.position[2].min() <= self.wall or not above.all()
+
+    def _stop_below_the_wall(self, step):
+        z, tracers = step.end.position[2], step.end.tracer[2]
+        if z.min() <= self.wall:
+            what = f"is at z = {z.min():.6g}, not above the wall, z = {self.wall:g}"
+            self._stop(step.number, step.start, what, int(z.argmin()))
+        k = int(np.argmin(tracers >= self.floor))
+        before = step.start.tracer[2, k]
+        what = f"tracer {k} goes from z = {before:.6g} through the wall, z = {self.wall:g}"
+        self._stop(step.number, step.start, what, None)
+
+    def _stop_on_the_way_to_the_wall(self, step):
+        """Raise DivergedError where a stage has come to the wall: its rates are not finite.
+
+        Seen by the velocities at the start of the step.
+        """
+        if self.wall is None:
+            return
+        start, zero = step.start, self.system.zeros()
+        u = self.system.velocities(start.time, start, zero, self.system.zeros())
+        z = start.position[2]
+        ahead = z + step.size * self.system.split(u)[0][2]
+        k = int(ahead.argmin())
+        if ahead[k] <= self.wall:
+            what = f"goes from z = {z[k]:.6g} to the wall, z = {self.wall:g}, or beyond in the step"
+            self._stop(step.number, start, what, k)
 
     def frame(self, number: int) -> None:
         """Remember the last good frame."""

@@ -1,4 +1,4 @@
-"""What a plane wall asks of a scene: all of it lies above."""
+"""What a plane wall asks of a scene: all of it lies above. How far above: the mirrored gap."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from rodsim.errors import Problem
-
-RADII = {"algebraic7": np.exp(-0.5), "algebraic9": np.exp(-1.0)}  # of a rod, over epsilon
+from rodsim.scene.neighbours import DIAMETERS
 
 
 def below_wall(case, scene) -> Iterator[Problem]:
@@ -23,7 +22,7 @@ def below_wall(case, scene) -> Iterator[Problem]:
             reason = f"point {k} is at z = {lowest:.6g}: must be above the wall, z = {scene.wall:g}"
             yield case.source.problem(("rods", rod.name, "shape"), reason)
     tracer = scene.initial.tracer[2]
-    if (tracer < scene.wall).any():
+    if (tracer < scene.floor).any():
         reason = f"one is at z = {tracer.min():.6g}, below the wall, z = {scene.wall:g}"
         yield case.source.problem(("tracers",), reason)
 
@@ -39,7 +38,16 @@ def near_wall(case, scene) -> Iterator[Problem]:
         if lowest < scene.epsilon:
             reason = (
                 f"point {k} is {lowest:.4g} above the wall, closer than epsilon = "
-                f"{scene.epsilon:.4g}: a rod is about {RADII[scene.blob]:.2g} epsilon thick, and "
-                "lubrication is not resolved"
+                f"{scene.epsilon:.4g}: the radius of a rod is about "
+                f"{0.5 * DIAMETERS[scene.blob]:.2g} epsilon, and lubrication is not resolved"
             )
             yield case.source.problem(("rods", rod.name, "shape"), reason)
+
+
+def mirror_gap(scene, position) -> tuple[float, str, int]:
+    """Return the smallest distance of a point (3, N) and its mirror image, 2 (z - h), whose it is.
+
+    With it the rod's name and the number of the point on it. Negative below the wall.
+    """
+    lowest = int(np.argmin(position[2]))
+    return 2.0 * float(position[2, lowest] - scene.wall), *scene.rods.locate(lowest)

@@ -10,7 +10,7 @@ from rodsim.compiled.parts import PartList
 from rodsim.errors import CaseError
 from rodsim.nodes import lay_out
 from rodsim.registry import kinds
-from rodsim.scene.at_wall import below_wall
+from rodsim.scene.at_wall import below_wall, near_wall
 from rodsim.scene.moduli import along_rods, typical
 from rodsim.scene.neighbours import coincident
 from rodsim.scene.rods import build_rods
@@ -64,6 +64,7 @@ def build_scene(case, stored=None) -> Scene:
     )
     if problems := list(below_wall(case, scene)):
         raise CaseError(problems)
+    scene = replace(scene, warnings=(*scene.warnings, *near_wall(case, scene)))
     if stored is None:
         _refuse_coincident(case, scene)
     return with_parts(scene, [part for kind in kinds() for part in kind.build(case, scene)])

@@ -35,10 +35,10 @@ def excluded(scene) -> np.ndarray:
 
 
 def any_pair_counts(scene) -> bool:
-    """Tell whether a scene has any two points that are no neighbours."""
+    """Tell whether a scene has any two points that are no neighbours, or a wall."""
     rods = scene.rods
     farthest = np.where(rods.closed, rods.count // 2, rods.count - 1)
-    return len(rods.names) > 1 or bool((farthest > excluded(scene)).any())
+    return scene.wall is not None or len(rods.names) > 1 or bool((farthest > excluded(scene)).any())
 
 
 def coincident(scene) -> tuple[int, int] | None:

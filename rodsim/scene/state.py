@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from rodsim.compiled.constants import ON_WALL
 from rodsim.compiled.parts import PartList
 from rodsim.nodes import Rods
 
@@ -63,6 +65,11 @@ class Scene:
     def ledger(self) -> int:
         """How many numbers the ledger has: the work of each counted part, what is dissipated."""
         return len(self.parts.working) + 1 if self.parts.external else 0
+
+    @property
+    def floor(self) -> float:
+        """Height below which there is no fluid: the wall, less what rounding may take away."""
+        return -math.inf if self.wall is None else self.wall - ON_WALL * self.epsilon
 
     @property
     def length_scale(self) -> float:

@@ -114,6 +114,25 @@ def test_the_carpet_moves_as_its_header_says(tmp_path):
 
 
 @pytest.mark.compiled
+def test_the_swimmer_at_a_wall_swims_as_its_header_says(tmp_path):
+    for wall, speed in ((), 8.83), (("--set", "fluid.wall=null"), 6.54):
+        with run("swimmer_at_wall", tmp_path, *wall, "--overwrite") as trajectory:
+            velocity = swimming_velocity(trajectory.time, trajectory.position, PERIOD)
+            assert velocity[1] == pytest.approx(speed, abs=0.02)
+            assert not trajectory.position[..., 0].any()  # planar
+
+
+@pytest.mark.compiled
+def test_the_fibre_settles_as_its_header_says(tmp_path):
+    with run("fibre_settling_on_wall", tmp_path) as trajectory:
+        x, _, z = trajectory.position[[0, -1]].transpose(2, 0, 1)
+        tilt = np.degrees(np.arctan2(z[:, -1] - z[:, 0], x[:, -1] - x[:, 0]))
+        assert z.mean(axis=1) == pytest.approx([3.5, 0.226], abs=2e-3)
+        assert tilt == pytest.approx([30.0, 2.7], abs=0.05)
+        assert (np.diff(trajectory.position[..., 2].mean(axis=1)) < 0).all()
+
+
+@pytest.mark.compiled
 def test_markers_of_the_low_twist_ring_are_stored(tmp_path):
     options = ("--set", "time.end=1e-3", "--set", "tracers.inner.along=10")
     with run("closed_ring_low_twist", tmp_path, *options) as trajectory:
@@ -189,4 +208,5 @@ def test_every_config_is_tested_here():
         "two_flagella", "carpet",
         "plasmid", "traced_filament",
         "sedimenting_fibre", "fibre_in_shear", "tethered_pair",
+        "swimmer_at_wall", "fibre_settling_on_wall",
     }  # fmt: skip

@@ -35,6 +35,9 @@ FINISHED = [
     ("starts", "one triad turned by 179 degrees"),
     ("neighbours", "two rods 0.1 epsilon apart"),
     ("neighbours", "on one line"),
+    ("at a wall", "0.66 epsilon above"),
+    ("at a wall", "0.1 epsilon above"),
+    ("at a wall", "falling on it, 1000 of its own bending forces"),
     ("long", "rod, 100 times the time"),
 ]
 
