@@ -76,6 +76,14 @@ def test_a_tracer_on_the_wall_is_taken_and_stays(settled):
         assert abs(run.tracers[-1, 0] - run.tracers[0, 0]).max() > 0.01
 
 
+def test_rounding_takes_no_tracer_through_the_wall(tmp_path):
+    case = make(tmp_path, SETTLING, [
+        "tracers.here=[[0.7, 0.2, -0.4000000000001]]", "time.end=0.26"])  # fmt: skip
+    simulate(case, tmp_path / "out.h5")
+    with open_trajectory(tmp_path / "out.h5") as run:
+        assert run.tracers[-1, 0] == pytest.approx([0.7, 0.2, -0.4], abs=1e-11)
+
+
 @pytest.mark.parametrize("command", ["validate", "run", "info"])
 def test_closer_than_epsilon_is_warned_of_once(command, tmp_path):
     output = ["-o", str(tmp_path / "out.h5"), "-q"] if command == "run" else []
