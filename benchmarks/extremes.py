@@ -112,16 +112,16 @@ def table(stretch=1.0, turn=0.0, at_all=False):
 
 def from_table(**options):
     """The rod from a text table; ``stability.run`` writes the file."""
-    shape = {"kind": "file", "path": "rod.txt", "spacing": LENGTH / (POINTS - 1)}
+    shape = {"kind": "file", "path": "rod.txt", "spacing": LENGTH / (POINTS - 1), "as_is": True}
     case = changed(ROD, {"rods.rod.shape": shape})
     return case | {"table": table(**options)}
 
 
-def pair(gap):
-    """Two rods side by side, ``gap`` times epsilon apart."""
+def pair(gap, along=0.0):
+    """Two rods side by side, ``gap`` times epsilon apart, one further on by ``along``."""
     case = copy.deepcopy(ROD)
     case["rods"]["other"] = copy.deepcopy(case["rods"]["rod"])
-    case["rods"]["other"]["shape"]["origin"] = [gap * 0.47, 0, 0]
+    case["rods"]["other"]["shape"]["origin"] = [gap * 0.47, 0, along]
     case["rods"]["other"]["strain_twist"] = [-1.3, 0, 1.7]
     return case
 
@@ -209,7 +209,10 @@ SCENES = {
         "all triads turned by 179 degrees": from_table(turn=179.0, at_all=True),
         "a triad turned by 180 degrees": from_table(turn=180.0),
     },
-    "neighbours": {"two rods 0.1 epsilon apart": pair(0.1), "on one line": pair(0.0)},
+    "neighbours": {
+        "two rods 0.1 epsilon apart": pair(0.1),
+        "on one line": pair(0.0, 0.5 * LENGTH / (POINTS - 1)),
+    },
     "at a wall": {
         "2 epsilon above": at_wall(ROD, 2, -90),
         "0.66 epsilon above": at_wall(ROD, 0.66, -90),

@@ -11,6 +11,7 @@ from rodsim.compiled.rotations import rotate
 from rodsim.errors import CaseError, DivergedError
 from rodsim.output import TrajectoryWriter
 from rodsim.progress import Silent
+from rodsim.run.gap import Gap
 from rodsim.run.recorder import plan_output
 from rodsim.scene.build import build_scene
 from rodsim.scene.evaluation import loads_of
@@ -84,10 +85,10 @@ def simulate(
     """
     setup, progress, begin = setup or Setup(), progress or Silent(), perf_counter()
     rods = ImmersedRods(case, setup)
-    system = RodSystem(rods.scene)
+    observe = _observer(rods, case)
     plan = plan_output(case, rods.scene, checkpoint={})
     with TrajectoryWriter.create(output, plan, overwrite) as writer:
-        writer.write_frame(0, 0, *system.observe(rods.state, rods.find_rates()))
+        writer.write_frame(0, 0, *observe())
         solve, index = 0.0, 0
         while index + 1 < len(writer.times) and perf_counter() - begin < max_seconds:
             index += 1
@@ -95,7 +96,7 @@ def simulate(
             if not np.isfinite(rods.state.position).all():
                 writer.finish("diverged", {})
                 raise DivergedError(f"gIB: the rod is no longer finite at step {rods.steps}")
-            writer.write_frame(index, rods.steps, *system.observe(rods.state, rods.find_rates()))
+            writer.write_frame(index, rods.steps, *observe())
         runtime = {
             "wall_seconds": perf_counter() - begin,
             "solve_seconds": solve,
@@ -105,6 +106,17 @@ def simulate(
         }
         writer.finish("finished" if index + 1 == len(writer.times) else "stopped", runtime)
     return runtime
+
+
+def _observer(rods, case):
+    """Return the function that gives fields and observables of the rods as they are."""
+    system, gap = RodSystem(rods.scene), Gap(rods.scene, case.units.names)
+
+    def observe():
+        fields, observables = system.observe(rods.state, rods.find_rates())
+        return fields, observables | gap.measure(rods.state)
+
+    return observe
 
 
 def _march(rods, time, end, progress):

@@ -163,7 +163,7 @@ def test_a_first_step_through_the_wall_is_rejected_and_the_run_goes_on():
     steps, system, integrator = states(case)
     start = system.scene.initial
     rate = system.rate(0.0, start, system.zeros(), system.zeros())
-    integrator.spectral_radius = stability(system).rate
+    integrator.fastest_rate = stability(system).rate
     *_, error = integrator.attempt(start, rate, 0.4)
     assert np.isnan(error)
     integrator._size = 0.4

@@ -51,7 +51,7 @@ SPATIAL = [
     ("at: end, force", "at: end, s: 0.2, force", 9, TIP, "needs one of at"),
     ("at: end, force", "at: middle, force", 9, f"{TIP}.at = middle", "must be one of start, end"),
     ("at: end, force", "s: 1.3, force", 9, f"{TIP}.s = 1.3",
-     "must be <= 1.21, the length of rod 'tail' (um)"),
+     "must be <= 1.21, the length of rod 'tail'"),
     ("at: end, force", "s: -0.2, force", 9, f"{TIP}.s = -0.2", "must be >= 0 (um)"),
     ("[0, 0.03, \"-f*t\"]", "[0, 0.03]", 9, f"{TIP}.force", "list of 3 numbers or expressions"),
     ("-f*t", "-g*t", 9, f"{TIP}.force.2 = -g*t", "unknown name 'g'"),
@@ -148,6 +148,6 @@ def test_a_place_on_a_rod_from_a_file(run, tmp_path):
     shape = "{kind: straight, points: 12, spacing: 0.11, origin: [0.3, 0.2, 0.7]}"
     case = CASE.replace(shape, "{kind: file, path: rod.txt, spacing: 0.11}")
     (message,) = run(case.replace("at: end, force", "s: 1.3, force"))
-    assert message.startswith(f"bad.yaml:9: {TIP}.s = 1.3: must be <= 1.21, the length of rod")
+    assert message.startswith(f"bad.yaml:9: {TIP}.s = 1.3 (um): must be <= 1.21, the length of rod")
     (message,) = run(case.replace("from: {rod: tail, at: end}", "from: {rod: tail, s: 1.3}"))
-    assert message.startswith(f"bad.yaml:14: {LINK}.from.s = 1.3: must be <= 1.21")
+    assert message.startswith(f"bad.yaml:14: {LINK}.from.s = 1.3 (um): must be <= 1.21")

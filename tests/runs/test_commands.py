@@ -149,7 +149,9 @@ def test_a_step_near_its_limit_is_warned_of(here):
     )
     run = call("run", RING, *SHORT, *EULER, *near)
     assert run.exit_code == 0
-    assert "warning: --set: time.step = 6.25e-05: is 85% of the largest stable step" in run.stderr
+    assert (
+        "warning: --set: time.step = 6.25e-05 (s): is 85% of the largest stable step" in run.stderr
+    )
 
 
 def test_a_rate_that_grows_during_the_run_stops_it_by_name(here):

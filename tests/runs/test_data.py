@@ -104,7 +104,7 @@ def test_outputs_in_other_units_are_converted_or_refused(write, output):
     [
         ("closed: false", "closed = false: the rod in the file is closed"),
         ("closed: true", None),
-        ("spacing: 0.5", "spacing = 0.5: the rod in the file has 0.245"),
+        ("spacing: 0.5", "spacing = 0.5 (um): the rod in the file has 0.245"),
         ("spacing: 0.2459", None),
     ],
 )

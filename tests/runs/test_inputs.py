@@ -50,7 +50,7 @@ def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "relax.yaml").write_text(RELAX)
     (tmp_path / "case.yaml").write_text(FROM.replace("PATH", "relax.h5"))
-    (tmp_path / "text.yaml").write_text(FROM.replace("PATH", "rod.txt, spacing: 0.4"))
+    (tmp_path / "text.yaml").write_text(FROM.replace("PATH", "rod.txt, spacing: 0.4, as_is: true"))
     table("rod.txt")
     return tmp_path
 

@@ -94,7 +94,7 @@ def test_closer_than_epsilon_is_warned_of_once(command, tmp_path):
     (line,) = said
     assert "rods.low.shape = " in line
     assert "point 0 is 0.1 above the wall" in line
-    assert "0.61 epsilon thick" in line
+    assert "is about 0.61 epsilon" in line
     assert "case.yaml:6" in line
     assert "high" not in line
 
