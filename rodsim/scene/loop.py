@@ -35,6 +35,13 @@ def to_increments(y, velocities):
 
 
 @inline
+def _clear(array):
+    for c in range(array.shape[0]):
+        for k in range(np.uint64(array.shape[1])):
+            array[c, k] = 0.0
+
+
+@inline
 def _add(share, total):
     for c in range(total.shape[0]):
         for k in range(np.uint64(total.shape[1])):
@@ -66,7 +73,7 @@ def evaluate(table, numbers, driven, rods, state, loads, velocities, own):
             call_part(address, row, constants, rods, state, loads, velocities)
             continue
         mine = own[account]
-        mine[:] = 0.0
+        _clear(mine)
         if table[k, IS_FLOW]:
             call_part(address, row, constants, rods, state, loads, (mine, velocities[1]))
             _add(mine, velocities[0])
@@ -138,8 +145,9 @@ def run_stages(calls, numbers, driven, rods, base, work, table, begin, end, size
     for j in range(begin, end + 1):
         y = Y[(j - 1) % 2]
         displace(base, y[:tracers_end], state)
-        loads[:] = 0.0
-        f[:] = 0.0
+        _clear(loads)
+        for i in range(np.uint64(f.size)):
+            f[i] = 0.0
         now = driven[j - begin if driven.shape[0] > 1 else 0]
         evaluate(calls, numbers, now, rods, state, loads, velocities, own)
         if f.size > tracers_end:
