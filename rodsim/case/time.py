@@ -21,8 +21,8 @@ class Time(Model):
         allow_inf_nan=False,
         ge=1e-13,
         lt=1.0,
-        description="rkc: bound on the local error of a step, of each rod relative to its length, and "
-        "of the tracers",
+        description="rkc: bound on the local error of a step, of each rod relative to its length, "
+        "and of the tracers",
     )
     max_step: Positive | None = quantity(
         "time",
