@@ -11,6 +11,7 @@ from rodsim.case import case_from_mapping
 from rodsim.errors import CaseError
 from rodsim.integrators.limits import stability
 from rodsim.integrators.make import make_integrator
+from rodsim.run.gap import Gap
 from rodsim.scene.at_wall import mirror_gap
 from rodsim.scene.build import build_scene
 from rodsim.scene.system import RodSystem
@@ -180,6 +181,22 @@ def test_the_mirror_gap_is_twice_the_lowest_height():
     z = scene.initial.position[2]
     assert gap == pytest.approx(2 * (z.min() + 0.3), rel=1e-14)
     assert (rod, k) == ("rod", int(z.argmin()))
+
+
+@pytest.mark.parametrize(("height", "expected", "warned"), [(0.1, 0.2, True), (0.5, 0.45, False)])
+def test_the_gap_counts_a_rod_and_its_image(height, expected, warned):
+    """Lying at 0.1 the image is nearest, at 0.2 and nearer than 1.213 epsilon = 0.279; at 0.5 the
+    points that are nearest and no neighbours are five spacings of 0.09 apart."""
+    scene = build_scene(
+        changed(
+            rods__rod__shape__rotate={"axis": [0, 1, 0], "degrees": 90},
+            rods__rod__shape__origin=[0.2, -0.3, height],
+        )
+    )
+    gap = Gap(scene, {"length": "um", "time": "s"})
+    gap.notify = (said := []).append
+    assert gap.measure(scene.initial)["gap"] == pytest.approx(expected, rel=1e-12)
+    assert [("comes closer to the wall" in text) for text in said] == [True] * warned
 
 
 REFUSED = [
