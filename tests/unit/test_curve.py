@@ -67,7 +67,7 @@ def test_a_spline_through_few_points_is_their_polynomial(count):
 def test_smoothing_is_scipys_at_a_weight_and_keeps_its_distance():
     u = 0.1 * (np.arange(60) + RNG.uniform(0.0, 0.7, 60))
     y = np.c_[np.sin(u), np.exp(-u)] + 0.05 * RNG.normal(size=(60, 2))
-    theirs = make_smoothing_spline(u, y, lam=0.013)(u)
+    theirs = np.stack([make_smoothing_spline(u, row, lam=0.013)(u) for row in y.T], axis=1)
     assert abs(y - _System(u, y, None).change(0.013) - theirs).max() < 1e-12
     for period in (None, 6.3):
         moved = smoothed(u, y, 0.045, period) - y
@@ -101,9 +101,10 @@ def test_banded_systems_against_dense_ones(count, cyclic):
 def test_smallest_rotations_turn_one_vector_into_the_other():
     before, after = (v / np.linalg.norm(v, axis=1)[:, None] for v in RNG.normal(size=(2, 9, 3)))
     turns = smallest_rotations(before, after)
-    assert abs(np.einsum("kab,kb->ka", turns, before) - after).max() < 1e-15
+    # a dozen roundings of numbers below 1; NumPy 1.26 and 2.4 sum in different orders
+    assert abs(np.einsum("kab,kb->ka", turns, before) - after).max() < 3e-15
     axis = np.cross(before, after)
-    assert abs(np.einsum("kab,kb->ka", turns, axis) - axis).max() < 1e-15
+    assert abs(np.einsum("kab,kb->ka", turns, axis) - axis).max() < 3e-15
 
 
 def test_frames_do_not_twist_but_by_their_turns():
