@@ -89,6 +89,7 @@ def taylor_green(n, box):
     return np.array([np.sin(x[0]) * np.cos(x[1]), -np.cos(x[0]) * np.sin(x[1]), 0.0 * x[0]])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("n", [16, 32])
 def test_taylor_green_decays_as_its_discrete_rate_says(n):
     """Its advection is a gradient also on the grid: only 1/(1 + dt nu lambda) a step is left."""

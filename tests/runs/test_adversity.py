@@ -202,6 +202,7 @@ def assert_flat(rounds):
 needs_proc = pytest.mark.skipif(not os.path.exists("/proc/self/fd"), reason="needs /proc")
 
 
+@pytest.mark.long
 @needs_proc
 def test_many_runs_in_one_process_leave_nothing_behind(tmp_path):
     assert_flat(soak(tmp_path, 20))

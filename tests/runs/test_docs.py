@@ -15,6 +15,8 @@ SLOW = (
     "choosing",
     "sweeps",
     "visualization",
+    "data",
+    "wall",
 )  # minutes where the machine is not quiet; and below, the tutorial
 BLOCK = re.compile(r"(?:<!-- (?P<mark>[\w: ]+) -->\n)?```(?P<kind>\w+)\n(?P<text>.*?)```", re.S)
 LINK = re.compile(r"\]\((?!https?:)([^)]+)\)")

@@ -28,7 +28,7 @@ FINISHED = [
     ("units", "metres"),
     ("units", "nanometres"),
     ("rest state", "Omega ds = 1.992, curvature"),
-    ("waves", "sigma = 6.28e4 rad/s"),
+    pytest.param("waves", "sigma = 6.28e4 rad/s", marks=pytest.mark.long),
     ("waves", "tolerance 0.5"),
     ("starts", "stretched by 2"),
     ("starts", "compressed by half"),
