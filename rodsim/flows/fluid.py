@@ -6,6 +6,8 @@ or below it makes all velocities NaN: a step that gets there is rejected.
 
 from __future__ import annotations
 
+from importlib import import_module
+
 import numpy as np
 
 from rodsim.case.fields import Model, Number, quantity
@@ -28,19 +30,20 @@ def fluid_parts(scene) -> list[Part]:
     kind = "planar" if scene.planar else "spatial"
     return [
         Part("fluid", FLOW, f"{home}:{kind}_{blob}", fixed=fixed),
-        Part("fluid", TRACERS, f"{home}:tracers_{blob}", fixed=fixed, pressure=_pressure(scene)),
+        Part(
+            "fluid", TRACERS, f"{home}:tracers_{blob}", fixed=fixed, pressure=_pressure(scene, home)
+        ),
     ]
 
 
-def _pressure(scene):
+def _pressure(scene, home):
     def pressure(points, sources, loads, t):
         """Return the pressure (T,) at points (3, T), eq. (62); NaN below a wall."""
-        from rodsim.flows import free, wall
         from rodsim.flows.blobs import BLOBS
 
-        home, height = (free, ()) if scene.wall is None else (wall, (scene.wall,))
+        height = () if scene.wall is None else (scene.wall,)
         out = np.zeros(points.shape[1])
-        kernel = home.pressure_kernel(BLOBS[scene.blob])
+        kernel = import_module(home).pressure_kernel(BLOBS[scene.blob])
         kernel(points, sources, loads, scene.epsilon, *height, out)
         out[points[2] < scene.floor] = np.nan
         return out
