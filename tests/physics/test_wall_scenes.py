@@ -1,7 +1,6 @@
 """Scenes with a plane wall: a reference trajectory, energy, symmetries, the fastest rate."""
 
-import copy
-
+import acting
 import numpy as np
 import pytest
 from scenes import difference, last, reference
@@ -45,14 +44,8 @@ ROD = {  # of tests/reference/wall-rod.txt
 
 def changed(**paths):
     """Return the case with some values set, ``__`` between keys; None takes a key out."""
-    case = copy.deepcopy(ROD)
-    for path, value in paths.items():
-        *parents, key = path.split("__")
-        node = case
-        for parent in parents:
-            node = node[parent]
-        node[key] = value
-    return case_from_mapping(case)
+    changes = {path.replace("__", "."): value for path, value in paths.items()}
+    return case_from_mapping(acting.changed(ROD, changes))
 
 
 def states(case):
