@@ -18,6 +18,7 @@ KINDS = (
     "rodsim.forces.elastic",
     "rodsim.forces.loads",
     "rodsim.forces.tethers",
+    "rodsim.forces.contact",
     "rodsim.flows.fluid",
     "rodsim.flows.background",
 )

@@ -1,0 +1,99 @@
+"""Contact: rods push each other, themselves and a wall apart. Arrays only.
+
+A smooth double line integral over the points of the rods that are nearer to each other than a
+diameter d, and no neighbours along a rod:
+
+    E   = sum over pairs A ds_i ds_j (1 - r^2/d^2)^3,    A = C a/d^3
+    g_i = 6 A ds_i ds_j/d^2 (1 - r^2/d^2)^2 (X_i - X_j) = -g_j,    no torque
+
+with r = |X_i - X_j|, ds half at the two ends of an open rod, a the largest bending modulus of the
+rod, of two rods the smaller one, C the strength. The energy has two continuous derivatives and
+every force is bounded, so an explicit method with error control follows it. Straight parallel lines
+at a distance h push each other with (32/35) 7 A (h/d) q^(5/2) per length, lines that cross at an
+angle alpha with 2 pi A h q^3/sin(alpha), q = 1 - h^2/d^2. Potentials of this kind between
+filaments: Maxian & Donev (2024, arXiv:2408.15913).
+
+A wall counts as a rod's surface: the centreline touches it at d/2. A rod near it is pushed as by
+its own mirror image, parallel to it: with z the height of a point and q = 1 - (2 z/d)^2,
+
+    E = sum (16/35) A d ds_i q^(7/2),    g_z = (64/5) A ds_i (z/d) q^(5/2)
+
+``fixed`` of the pairs: d, of each rod C a/d^3 and the number of segments excluded, of each point
+ds. Of the wall: its height, d, of each point A ds.
+"""
+
+import math
+
+import numpy as np
+
+from rodsim.compiled.flags import MAT, RODS, VEC, kernel, unsigned
+from rodsim.compiled.kernels import part
+from rodsim.forces.blocks import distance2, near_points
+
+
+@unsigned
+def _numbers(fixed, rods):
+    """Return d, A (R,), excluded (R,), ds (N,)."""
+    n = rods[0].size
+    return fixed[0], fixed[1 : 1 + n], fixed[1 + n : 1 + 2 * n].astype(np.int64), fixed[1 + 2 * n :]
+
+
+@part
+def push_apart(row, fixed, rods, state, loads, velocities):
+    """Add the force between all points that are nearer to each other than d."""
+    X = state[0]
+    d, strength, excluded, ds = _numbers(fixed, rods)
+    pairs = near_points(X, rods[0], rods[1], rods[2], excluded, d)
+    for m in range(pairs.shape[0]):
+        i, j, r, s = pairs[m]
+        q = 1.0 - distance2(X, i, j) / (d * d)
+        push = 6.0 * min(strength[r], strength[s]) * ds[i] * ds[j] / (d * d) * q * q
+        for c in range(3):
+            force = push * (X[c, i] - X[c, j])
+            loads[c, i] += force
+            loads[c, j] -= force
+
+
+@part
+def push_off_wall(row, fixed, rods, state, loads, velocities):
+    """Add the force of the wall on all points that are nearer to it than d/2."""
+    z, height, d = state[0][2], fixed[0], fixed[1]
+    for k in range(z.size):
+        share = (z[k] - height) / d
+        q = 1.0 - 4.0 * share * share
+        if q > 0.0:
+            loads[2, k] += 12.8 * fixed[2 + k] * share * q * q * math.sqrt(q)
+
+
+@kernel(f"void({VEC}, {RODS}, {MAT}, {VEC})")
+def pair_energies(fixed, rods, X, out):
+    """Add to ``out`` (R,) the energy of all pairs, half of it to each of the two rods."""
+    d, strength, excluded, ds = _numbers(fixed, rods)
+    pairs = near_points(X, rods[0], rods[1], rods[2], excluded, d)
+    for m in range(pairs.shape[0]):
+        i, j, r, s = pairs[m]
+        q = 1.0 - distance2(X, i, j) / (d * d)
+        energy = min(strength[r], strength[s]) * ds[i] * ds[j] * q * q * q
+        out[r] += 0.5 * energy
+        out[s] += 0.5 * energy
+
+
+def wall_energies(fixed, rods, X) -> np.ndarray:
+    """Return the energy (R,) of each rod at the wall."""
+    q = np.maximum(1.0 - (2.0 * (X[2] - fixed[0]) / fixed[1]) ** 2, 0.0)
+    return np.add.reduceat(16.0 / 35.0 * fixed[1] * fixed[2:] * q**3.5, rods[0])
+
+
+@kernel(f"Tuple((float64, int64, int64))({VEC}, {RODS}, {MAT}, float64)")
+def closest_within(fixed, rods, X, reach):
+    """Return (distance, i, j) of the two points nearest to each other, if they push each other.
+
+    (reach, -1, -1) where none are nearer than that.
+    """
+    pairs = near_points(X, rods[0], rods[1], rods[2], _numbers(fixed, rods)[2], reach)
+    least, first, second = reach * reach, -1, -1
+    for m in range(pairs.shape[0]):
+        d2 = distance2(X, pairs[m, 0], pairs[m, 1])
+        if d2 < least:
+            least, first, second = d2, pairs[m, 0], pairs[m, 1]
+    return math.sqrt(least), first, second
