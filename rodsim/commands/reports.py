@@ -20,6 +20,7 @@ from rodsim.scene.restore import restore_case, stored_diameter
 from rodsim.units import unit_text
 
 MOST_RODS = 50  # described one by one
+MOST_POINTS = 600  # of a rod whose linking number is told: it takes all pairs
 
 
 def describe_case(case, refuse=False) -> str:
@@ -46,6 +47,8 @@ def describe_case(case, refuse=False) -> str:
     lines += describe_start(scene, system, unit.names)
     if scene.wall is not None:
         lines.append(describe_wall(scene, unit.length))
+    if scene.parts.apart:
+        lines.append(describe_contact(scene, case.contact, unit.length))
     if scene.planar:
         lines.append("planar: only u_y, u_z and w_x are computed")
     if scene.parts.external:
@@ -77,6 +80,21 @@ def describe_wall(scene, length_unit: str) -> str:
     return (
         f"wall: z = {scene.wall:g} {length_unit}, without slip; lowest: point {k} of rod {rod}, "
         f"{height:.4g} {length_unit} = {height / scene.epsilon:.4g} epsilon above it"
+    )
+
+
+def describe_contact(scene, contact, length_unit: str) -> str:
+    """Return the line on contact: how thick rods are to each other, and how well that is resolved.
+
+    Points in a diameter, of the coarsest rod, tell how much strands feel each other's points.
+    """
+    apart, spacing = scene.parts.apart, scene.rods.spacing.max()
+    reach = ", ".join(map(str, sorted(set(apart.excluded.tolist()))))
+    who = "all rods and themselves" if apart.itself else "different rods"
+    return (
+        f"contact: {who}, diameter {apart.diameter:.6g} {length_unit} "
+        f"= {apart.diameter / scene.epsilon:.4g} epsilon = {apart.diameter / spacing:.3g} spacings, "
+        f"strength {contact.strength:g}; points within {reach} segments of a rod ignore each other"
     )
 
 
@@ -153,6 +171,29 @@ def _endings(run):
     return [text for text in sentences if text]
 
 
+def _links(run) -> list[str]:
+    """Return how often each closed rod winds around itself, first and last: it can never change.
+
+    Where it has, the rod has passed through itself.
+    """
+    if run.frames == 0 or "director" not in run.fields:
+        return []
+    from rodsim.analysis.topology import twist, writhe
+
+    lines = []
+    for rod in run.rods:
+        if not rod.closed or rod.count > MOST_POINTS:
+            continue
+        shapes = (
+            (run.read("position", k)[rod.nodes], run.read("director", k)[rod.nodes])
+            for k in (0, -1)
+        )
+        first, last = (round(twist(X, D) + writhe(X)) for X, D in shapes)
+        passed = "" if first == last else ": it has passed through itself"
+        lines.append(f"rod {rod.name}: linking number {first} at first, {last} at last{passed}")
+    return lines
+
+
 def _inputs(run) -> list[str]:
     """Return a line for each file the run began from: its digest, and whether it is the same."""
     from rodsim.scene.inputs import look_again, stored_digests
@@ -185,6 +226,7 @@ def describe_output(path) -> str:
             lines.append(f"rod {rod.name}: {rod.count} points, {kind}, spacing {rod.spacing:g}")
         if len(run.rods) > MOST_RODS:
             lines.append(f"and {len(run.rods) - MOST_RODS} more rods")
+        lines += _links(run)
         lines += _endings(run)
         if run.wall is not None:
             lines.append(f"wall: z = {run.wall:g} {unit['length']}, without slip")

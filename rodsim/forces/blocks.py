@@ -12,7 +12,7 @@ import numpy as np
 from rodsim.compiled.flags import inline, unsigned
 
 BLOCK = 16  # consecutive points of a rod
-FEW = 150  # blocks; measured: benchmarks/contact.py
+FEW = 250  # blocks; measured: benchmarks/README.md
 ROUNDING = 1e-12  # relative, of a bound: more than distances and radii can err
 ROD, BEGIN, END, MIDDLE = range(4)  # columns of a table of blocks
 
@@ -68,17 +68,22 @@ def near_points(X, first, count, closed, excluded, reach):
     """
     table, radius = blocks_of(X, first, count)
     blocks = near_blocks(X, table, radius, reach)
-    pairs, n = np.empty((64, 4), dtype=np.int64), 0
+    pairs, n = np.empty((4 * BLOCK * BLOCK, 4), dtype=np.int64), 0
     for m in range(blocks.shape[0]):
-        a, b = blocks[m]
+        a, b = blocks[m, 0], blocks[m, 1]
         r, s = table[a, ROD], table[b, ROD]
+        far = (radius[b] + reach) * (1.0 + ROUNDING)
+        pairs = _with_room(pairs, n + BLOCK * BLOCK)
         for i in range(table[a, BEGIN], table[a, END]):
+            if distance2(X, np.uint64(i), np.uint64(table[b, MIDDLE])) > far * far:
+                continue
             begin, end = span(
                 i, table[b, BEGIN], table[b, END], r == s, count[r], closed[r], excluded[r]
             )
-            for j in range(max(i + 1, begin), end):
-                if distance2(X, i, j) < reach * reach:
-                    pairs = _with_room(pairs, n)
+            x, y, z = X[0, np.uint64(i)], X[1, np.uint64(i)], X[2, np.uint64(i)]
+            for j in range(np.uint64(begin), np.uint64(max(begin, end))):
+                dx, dy, dz = x - X[0, j], y - X[1, j], z - X[2, j]
+                if dx * dx + dy * dy + dz * dz < reach * reach:
                     pairs[n, 0], pairs[n, 1], pairs[n, 2], pairs[n, 3] = i, j, r, s
                     n += 1
     return pairs[:n]
@@ -95,26 +100,30 @@ def near_blocks(X, table, radius, reach):
 @inline
 def _are_near(X, table, radius, reach, a, b):
     far = (radius[a] + radius[b] + reach) * (1.0 + ROUNDING)
-    return distance2(X, table[a, MIDDLE], table[b, MIDDLE]) <= far * far
+    return distance2(X, np.uint64(table[a, MIDDLE]), np.uint64(table[b, MIDDLE])) <= far * far
 
 
 @unsigned
 def _with_room(pairs, n):
-    """Return pairs, of which n are taken, in a larger array where that is full."""
-    if n < pairs.shape[0]:
+    """Return pairs in an array with room for n, twice as large where it had not.
+
+    Asked for outside of the inner loops: there it costs more than all else.
+    """
+    if n <= pairs.shape[0]:
         return pairs
     larger = np.empty((2 * n, pairs.shape[1]), dtype=np.int64)
-    larger[:n] = pairs
+    larger[: pairs.shape[0]] = pairs
     return larger
 
 
 @unsigned
 def _all_pairs(X, table, radius, reach):
-    pairs, n = np.empty((4 * table.shape[0] + 4, 2), dtype=np.int64), 0
-    for a in range(table.shape[0]):
-        for b in range(a, table.shape[0]):
+    blocks, n = table.shape[0], 0
+    pairs = np.empty((4 * blocks, 2), dtype=np.int64)
+    for a in range(blocks):
+        pairs = _with_room(pairs, n + blocks - a)
+        for b in range(a, blocks):
             if _are_near(X, table, radius, reach, a, b):
-                pairs = _with_room(pairs, n)
                 pairs[n, 0], pairs[n, 1] = a, b
                 n += 1
     return pairs[:n]
@@ -163,13 +172,13 @@ def _pairs_in_cells(X, table, radius, reach):
             y = cell[a, 1] + way // 3 % 3 - 1
             z = cell[a, 2] + way % 3 - 1
             h = _bucket(x, y, z, mask)
+            pairs = _with_room(pairs, n + start[h + 1] - start[h])
             for m in range(start[h], start[h + 1]):
                 b = items[m]
                 here = cell[b, 0] == x and cell[b, 1] == y and cell[b, 2] == z
                 if not here or (way == 13 and b < a):
                     continue
                 if _are_near(X, table, radius, reach, a, b):
-                    pairs = _with_room(pairs, n)
                     pairs[n, 0], pairs[n, 1] = min(a, b), max(a, b)
                     n += 1
     return pairs[:n]

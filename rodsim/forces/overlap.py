@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from rodsim.compiled.parts import Apart, Guard
@@ -15,24 +13,22 @@ STEP = 0.25  # diameters that a point may move in a step: two then come nearer b
 # what all move together
 
 
-def at_start(case, scene, apart: Apart) -> Iterator[Problem]:
+def at_start(case, scene, apart: Apart) -> list[Problem]:
     """Return warnings of rods that start in contact; CaseError where they overlap too much."""
-    found = [who for who in (_closest(scene, apart), _lowest(scene)) if who]
-    problems = [[], []]
-    for distance, name, words in found:
-        share = distance / apart.diameter
-        if share >= 1.0:
-            continue
+    errors, warnings = [], []
+    for distance, name, words in filter(None, (_closest(scene, apart), _lowest(scene))):
+        share, path = distance / apart.diameter, ("rods", name, "shape")
         reason = f"{words}, {share:.2g} contact diameters"
         if share < PRESSED:
             reason += ": rods cannot start inside each other; move them, or make contact.diameter "
             reason += f"smaller than {distance / PRESSED:.3g}"
-        else:
+            errors.append(case.source.problem(path, reason))
+        elif share < 1.0:
             reason += ": they start in contact, and push each other apart"
-        problems[share < PRESSED].append(case.source.problem(("rods", name, "shape"), reason))
-    if problems[True]:
-        raise CaseError(problems[True])
-    return problems[False]
+            warnings.append(case.source.problem(path, reason))
+    if errors:
+        raise CaseError(errors)
+    return warnings
 
 
 def _closest(scene, apart):
