@@ -91,9 +91,10 @@ def describe_contact(scene, contact, length_unit: str) -> str:
     apart, spacing = scene.parts.apart, scene.rods.spacing.max()
     reach = ", ".join(map(str, sorted(set(apart.excluded.tolist()))))
     who = "all rods and themselves" if apart.itself else "different rods"
+    epsilons, spacings = apart.diameter / scene.epsilon, apart.diameter / spacing
     return (
         f"contact: {who}, diameter {apart.diameter:.6g} {length_unit} "
-        f"= {apart.diameter / scene.epsilon:.4g} epsilon = {apart.diameter / spacing:.3g} spacings, "
+        f"= {epsilons:.4g} epsilon = {spacings:.3g} spacings, "
         f"strength {contact.strength:g}; points within {reach} segments of a rod ignore each other"
     )
 

@@ -147,7 +147,7 @@ def _sorted_into_cells(X, table, size):
     cell, start = np.empty((blocks, 3), dtype=np.int64), np.zeros(buckets + 1, dtype=np.int64)
     for a in range(blocks):
         for c in range(3):
-            cell[a, c] = int(math.floor(X[c, table[a, MIDDLE]] / size))
+            cell[a, c] = math.floor(X[c, table[a, MIDDLE]] / size)
         start[_bucket(cell[a, 0], cell[a, 1], cell[a, 2], buckets - 1) + 1] += 1
     for h in range(buckets):
         start[h + 1] += start[h]

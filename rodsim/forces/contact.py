@@ -10,7 +10,6 @@ pairs and the wall: a surface that points are held d/2 away from.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from typing import Annotated, Literal
 
 import numpy as np
@@ -26,6 +25,7 @@ from rodsim.registry import Kind
 
 DIAMETERS = {"algebraic7": 1.213, "algebraic9": 0.7358}  # hydrodynamic, of the blobs, in epsilons
 FEWEST, FEW = 2.0, 2.5  # spacings in a diameter: refused below, warned of below
+EXCLUSION = "contact", "exclusion"
 PAIRS, WALL = "rodsim.forces.repulsion:push_apart", "rodsim.forces.repulsion:push_off_wall"
 
 
@@ -71,25 +71,16 @@ def contact_diameter(contact: Contact, blob: str, epsilon: float) -> float:
     return given.epsilons * epsilon if isinstance(given, Epsilons) else given
 
 
-def _check(case, rod_names) -> Iterator[tuple]:
-    """Yield that nothing can touch where that can be told from the words."""
-    contact = case.contact
-    if contact is None or case.fluid is None or contact.pairs == "all":
-        return
-    if len(rod_names) == 1 and case.fluid.wall is None:
-        yield ("contact", "pairs"), "there is one rod only: nothing would touch; leave it out"
-
-
 def _apart(case, scene) -> Apart:
     contact, rods = case.contact, scene.rods
     diameter = contact_diameter(contact, scene.blob, scene.epsilon)
     reach = contact.exclusion or 0.5 * math.pi * diameter
     if reach < diameter:
-        reason = (
-            f"must be at least the diameter, {diameter:.6g}: neighbours on a straight rod would "
-            "push each other"
-        )
-        raise CaseError([case.source.problem(("contact", "exclusion"), reason)])
+        reason = f"must be at least the diameter, {diameter:.6g}: neighbours on a straight rod "
+        raise CaseError([case.source.problem(EXCLUSION, reason + "would push each other")])
+    if contact.pairs == "between" and len(rods) == 1 and scene.wall is None:
+        reason = "there is one rod only, so nothing would touch: leave it out"
+        raise CaseError([case.source.problem(("contact", "pairs"), reason)])
     return Apart(diameter, segments_within(reach, rods), contact.pairs == "all")
 
 
@@ -176,5 +167,4 @@ KIND = Kind(
     where="Case",
     words=Contact,
     about="rods push each other, themselves and the wall apart; left out: no contact",
-    check=_check,
 )

@@ -80,6 +80,6 @@ class Gap:
         length, unit = self.units["length"], self.units["time"]
         return (
             f"{who} are {distance:.3g} {length} apart at t = {time:.6g} {unit}; to the fluid a rod "
-            f"is {self.diameter:.3g} {length} thick. Nothing but the fluid keeps rods apart, and "
-            "below that the model does not hold for rods that touch: contact: {} (docs/contact.md)"
+            f"is {self.diameter:.3g} {length} thick. Nothing but the fluid keeps them apart, and "
+            "below that the model does not hold for rods that touch: contact: {}, docs/contact.md"
         )

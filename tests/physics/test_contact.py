@@ -53,7 +53,7 @@ def energy(system, position):
 def test_the_force_is_the_gradient_of_the_energy():
     """Sixth-order differences; where a pair crosses the diameter the third derivative jumps."""
     system = tangle()
-    X, h = system.scene.initial.position, 1e-4
+    X, h = system.scene.initial.position, 1e-5
     force, rng = forces(system), np.random.default_rng(5)
     assert force[:2].any(axis=0).sum() > 100
     assert of_part(system, "contact_wall")[0].any(axis=0).sum() == 5
@@ -64,7 +64,7 @@ def test_the_force_is_the_gradient_of_the_energy():
             for n, weight in ((1, 45), (2, -9), (3, 1))
         ]
         slope = sum(sums) / (60.0 * h)
-        assert slope == pytest.approx(-(force * way).sum(), rel=1e-5)
+        assert slope == pytest.approx(-(force * way).sum(), abs=1e-10 * abs(force * way).sum())
 
 
 def test_pairs_have_no_net_force_and_no_net_torque_and_the_wall_has_one():
@@ -172,8 +172,7 @@ def test_a_wall_pushes_a_rod_as_its_mirror_image_would(h):
     pair = system_from(free)[1]
     between = of_part(pair, "contact")[0][2, :141]
     assert wall[20:120] == pytest.approx(between[20:120], rel=5e-3)  # d = 6.5 ds
-    ends = [0.5 * wall[70], *wall[1:3], wall[70]]
-    assert wall[[0, 1, 2, 3]] == pytest.approx([0.5 * wall[70]] + [wall[70]] * 3, rel=1e-9), ends
+    assert wall[:3] == pytest.approx([0.5 * wall[70], wall[70], wall[70]], rel=1e-9)
     stored = energy(system, system.scene.initial.position)
     whole = 0.5 * energy(pair, pair.scene.initial.position).sum()
     assert stored[0] == pytest.approx(whole, rel=2e-2)  # the ends see half of each other
