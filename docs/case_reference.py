@@ -50,6 +50,8 @@ SECTIONS = {
     "CurveShape": "rods.NAME.shape, kind: curve",
     "Rotate": "rods.NAME.shape.rotate",
     "Tether": "tethers.NAME",
+    "Contact": "contact",
+    "Epsilons": "contact.diameter with epsilons",
     "OnRod": "an end of a tether on a rod",
     "Tube": "tracers.NAME as a mapping",
     "Time": "time",
