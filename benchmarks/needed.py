@@ -26,6 +26,7 @@ PARTS = {
     "loads: a follower, driven": "rods.ring.loads={w: {s: 0.3, force: [0, 0, '-1e-4*cos(t)'],"
                                  " frame: triad}}",
     "tethers: one": "tethers={t: {from: {rod: ring, s: 0.3}, to: [3, 0, 0], stiffness: 1e-4}}",
+    "contact: nothing touches": "contact={}",
     "fluid.flow: a shear": "fluid.flow=['2.3*z', 0, 0]",
     "fluid.flow: sin, exp, t": "fluid.flow=['sin(2.3*z + t)*exp(-y**2)', 0, 0]",
 }  # fmt: skip

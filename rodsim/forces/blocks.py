@@ -60,33 +60,29 @@ def span(i, begin, end, same, count, closed, excluded):
 
 
 @unsigned
-def near_points(X, first, count, closed, excluded, reach):
-    """Return all pairs (n, 4) of points within ``reach`` that count: i < j, their rods r, s.
+def points_within(X, table, radius, a, b, rods, excluded, reach, found):
+    """Write the pairs of points i < j of two blocks a <= b that are within ``reach`` and count.
 
-    Points count if they are of different rods, or more than ``excluded[r]`` segments apart along
-    rod r, the shorter way round a closed one. Serial, so always in the same order.
+    Into the first rows of ``found`` (BLOCK^2, 2); returns how many. Points count if they are of
+    different rods, or more than ``excluded[r]`` segments apart along rod r, the shorter way round a
+    closed one. ``rods``: ``nodes.Rods.tables``.
     """
-    table, radius = blocks_of(X, first, count)
-    blocks = near_blocks(X, table, radius, reach)
-    pairs, n = np.empty((4 * BLOCK * BLOCK, 4), dtype=np.int64), 0
-    for m in range(blocks.shape[0]):
-        a, b = blocks[m, 0], blocks[m, 1]
-        r, s = table[a, ROD], table[b, ROD]
-        far = (radius[b] + reach) * (1.0 + ROUNDING)
-        pairs = _with_room(pairs, n + BLOCK * BLOCK)
-        for i in range(table[a, BEGIN], table[a, END]):
-            if distance2(X, np.uint64(i), np.uint64(table[b, MIDDLE])) > far * far:
-                continue
-            begin, end = span(
-                i, table[b, BEGIN], table[b, END], r == s, count[r], closed[r], excluded[r]
-            )
-            x, y, z = X[0, np.uint64(i)], X[1, np.uint64(i)], X[2, np.uint64(i)]
-            for j in range(np.uint64(begin), np.uint64(max(begin, end))):
-                dx, dy, dz = x - X[0, j], y - X[1, j], z - X[2, j]
-                if dx * dx + dy * dy + dz * dz < reach * reach:
-                    pairs[n, 0], pairs[n, 1], pairs[n, 2], pairs[n, 3] = i, j, r, s
-                    n += 1
-    return pairs[:n]
+    r, same, n = table[a, ROD], table[a, ROD] == table[b, ROD], 0
+    far = (radius[b] + reach) * (1.0 + ROUNDING)
+    for i in range(table[a, BEGIN], table[a, END]):
+        k = np.uint64(i)
+        if distance2(X, k, np.uint64(table[b, MIDDLE])) > far * far:
+            continue
+        begin, end = span(
+            i, table[b, BEGIN], table[b, END], same, rods[1][r], rods[2][r], excluded[r]
+        )
+        x, y, z = X[0, k], X[1, k], X[2, k]
+        for j in range(np.uint64(begin), np.uint64(max(begin, end))):
+            dx, dy, dz = x - X[0, j], y - X[1, j], z - X[2, j]
+            if dx * dx + dy * dy + dz * dz < reach * reach:
+                found[n, 0], found[n, 1] = i, j
+                n += 1
+    return n
 
 
 @unsigned

@@ -28,7 +28,7 @@ import numpy as np
 
 from rodsim.compiled.flags import MAT, RODS, VEC, kernel, unsigned
 from rodsim.compiled.kernels import part
-from rodsim.forces.blocks import distance2, near_points
+from rodsim.forces.blocks import BLOCK, ROD, blocks_of, distance2, near_blocks, points_within
 
 
 @unsigned
@@ -38,20 +38,31 @@ def _numbers(fixed, rods):
     return fixed[0], fixed[1 : 1 + n], fixed[1 + n : 1 + 2 * n].astype(np.int64), fixed[1 + 2 * n :]
 
 
+@unsigned
+def _near(X, rods, reach):
+    """Return the blocks of all rods, pairs of them that may be near, and room for their points."""
+    table, radius = blocks_of(X, rods[0], rods[1])
+    pairs = near_blocks(X, table, radius, reach)
+    return table, radius, pairs, np.empty((BLOCK * BLOCK, 2), dtype=np.uint64)
+
+
 @part
 def push_apart(row, fixed, rods, state, loads, velocities):
     """Add the force between all points that are nearer to each other than d."""
     X = state[0]
     d, strength, excluded, ds = _numbers(fixed, rods)
-    pairs = near_points(X, rods[0], rods[1], rods[2], excluded, d)
-    for m in range(pairs.shape[0]):
-        i, j, r, s = pairs[m]
-        q = 1.0 - distance2(X, i, j) / (d * d)
-        push = 6.0 * min(strength[r], strength[s]) * ds[i] * ds[j] / (d * d) * q * q
-        for c in range(3):
-            force = push * (X[c, i] - X[c, j])
-            loads[c, i] += force
-            loads[c, j] -= force
+    table, radius, pairs, near = _near(X, rods, d)
+    for p in range(pairs.shape[0]):
+        a, b = pairs[p, 0], pairs[p, 1]
+        stiffness = 6.0 * min(strength[table[a, ROD]], strength[table[b, ROD]]) / (d * d)
+        for m in range(points_within(X, table, radius, a, b, rods, excluded, d, near)):
+            i, j = near[m, 0], near[m, 1]
+            q = 1.0 - distance2(X, i, j) / (d * d)
+            push = stiffness * ds[i] * ds[j] * q * q
+            for c in range(3):
+                force = push * (X[c, i] - X[c, j])
+                loads[c, i] += force
+                loads[c, j] -= force
 
 
 @part
@@ -69,11 +80,14 @@ def push_off_wall(row, fixed, rods, state, loads, velocities):
 def pair_energies(fixed, rods, X, out):
     """Add to ``out`` (R,) the energy of all pairs, half of it to each of the two rods."""
     d, strength, excluded, ds = _numbers(fixed, rods)
-    pairs = near_points(X, rods[0], rods[1], rods[2], excluded, d)
-    for m in range(pairs.shape[0]):
-        i, j, r, s = pairs[m]
-        q = 1.0 - distance2(X, i, j) / (d * d)
-        energy = min(strength[r], strength[s]) * ds[i] * ds[j] * q * q * q
+    table, radius, pairs, near = _near(X, rods, d)
+    for p in range(pairs.shape[0]):
+        a, b, energy = pairs[p, 0], pairs[p, 1], 0.0
+        r, s = table[a, ROD], table[b, ROD]
+        for m in range(points_within(X, table, radius, a, b, rods, excluded, d, near)):
+            i, j = near[m, 0], near[m, 1]
+            q = 1.0 - distance2(X, i, j) / (d * d)
+            energy += min(strength[r], strength[s]) * ds[i] * ds[j] * q * q * q
         out[r] += 0.5 * energy
         out[s] += 0.5 * energy
 
@@ -90,10 +104,12 @@ def closest_within(fixed, rods, X, reach):
 
     (reach, -1, -1) where none are nearer than that.
     """
-    pairs = near_points(X, rods[0], rods[1], rods[2], _numbers(fixed, rods)[2], reach)
-    least, first, second = reach * reach, -1, -1
-    for m in range(pairs.shape[0]):
-        d2 = distance2(X, pairs[m, 0], pairs[m, 1])
-        if d2 < least:
-            least, first, second = d2, pairs[m, 0], pairs[m, 1]
+    excluded, least, first, second = _numbers(fixed, rods)[2], reach * reach, -1, -1
+    table, radius, pairs, near = _near(X, rods, reach)
+    for p in range(pairs.shape[0]):
+        a, b = pairs[p, 0], pairs[p, 1]
+        for m in range(points_within(X, table, radius, a, b, rods, excluded, reach, near)):
+            d2 = distance2(X, near[m, 0], near[m, 1])
+            if d2 < least:
+                least, first, second = d2, int(near[m, 0]), int(near[m, 1])
     return math.sqrt(least), first, second
