@@ -59,7 +59,6 @@ def _draw(path, found):
             axes.set_ylim(6.1, 9.0)
     axes.set_yscale("log")
     axes.legend(frameon=False)
-    figure.tight_layout()
     save(figure, path, dpi=75)
 
 
