@@ -161,7 +161,8 @@ def frame(points, path, fields):
     machine = Machine(case, scene, force=True)
     snapshot = capture(machine, Recorder(machine, time.perf_counter(), 0.0), scene.initial)
     writer = TrajectoryWriter.create(path, plan_output(case, scene, snapshot))
-    content = machine.system.observe(scene.initial)
+    fields, observables = machine.system.observe(scene.initial)
+    content = fields, observables | machine.gap.measure(scene.initial)
     return lambda: writer.write_frame(0, 0, *content)
 
 

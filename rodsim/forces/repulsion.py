@@ -52,12 +52,13 @@ def push_apart(row, fixed, rods, state, loads, velocities):
     X = state[0]
     d, strength, excluded, ds = _numbers(fixed, rods)
     table, radius, pairs, near = _near(X, rods, d)
+    over_d2 = 1.0 / (d * d)
     for p in range(pairs.shape[0]):
         a, b = pairs[p, 0], pairs[p, 1]
-        stiffness = 6.0 * min(strength[table[a, ROD]], strength[table[b, ROD]]) / (d * d)
+        stiffness = 6.0 * min(strength[table[a, ROD]], strength[table[b, ROD]]) * over_d2
         for m in range(points_within(X, table, radius, a, b, rods, excluded, d, near)):
             i, j = near[m, 0], near[m, 1]
-            q = 1.0 - distance2(X, i, j) / (d * d)
+            q = 1.0 - distance2(X, i, j) * over_d2
             push = stiffness * ds[i] * ds[j] * q * q
             for c in range(3):
                 force = push * (X[c, i] - X[c, j])
