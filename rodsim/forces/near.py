@@ -1,6 +1,6 @@
 """Points that are near to each other but no neighbours along a rod, for what is asked once.
 
-What is asked thousands of times a second is in :mod:`rodsim.forces.blocks`. Nothing here is
+What is asked thousands of times a second is in :mod:`rodsim.forces.spheres`. Nothing here is
 compiled, so the checks of a case need not wait for Numba.
 """
 

@@ -34,7 +34,7 @@ def at_start(case, scene, apart: Apart) -> list[Problem]:
 def _closest(scene, apart):
     """Return (distance, rod, words) of the two points nearest to each other, None beyond d."""
     excluded = apart.excluded if apart.itself else scene.rods.count
-    position = scene.initial.position
+    position = scene.initial.position[:, : scene.rods.points]
     first, second, distance = pairs_within(position, scene.rods, excluded, apart.diameter)
     if not len(distance):
         return None
@@ -48,7 +48,7 @@ def _lowest(scene):
     """Return the same of the point next to the wall, from its mirror image."""
     if scene.wall is None:
         return None
-    height = scene.initial.position[2] - scene.wall
+    height = scene.initial.position[2, : scene.rods.points] - scene.wall
     k = int(np.argmin(height))
     name, i = scene.rods.locate(k)
     return 2.0 * height[k], name, f"point {i} is {2.0 * height[k]:.4g} from its image in the wall"
@@ -73,8 +73,9 @@ def guard(case, scene, fixed: np.ndarray) -> Guard:
         distance, first, second = closest_within(fixed, rods.tables, state.position, limit)
         if first >= 0:
             return _pressed(case, rods, distance, first, second, unit)
-        if scene.wall is not None and 2.0 * (state.position[2].min() - scene.wall) < limit:
-            name, k = rods.locate(int(state.position[2].argmin()))
+        z = state.position[2, : rods.points]
+        if scene.wall is not None and 2.0 * (z.min() - scene.wall) < limit:
+            name, k = rods.locate(int(z.argmin()))
             return _remedy(case, f"rod '{name}' is pressed into the wall at point {k}")
         return None
 

@@ -28,7 +28,7 @@ import numpy as np
 
 from rodsim.compiled.flags import MAT, RODS, VEC, kernel, unsigned
 from rodsim.compiled.kernels import part
-from rodsim.forces.blocks import BLOCK, ROD, blocks_of, distance2, near_blocks, points_within
+from rodsim.forces.spheres import BLOCK, ROD, blocks_of, distance2, near_blocks, points_within
 
 
 @unsigned
@@ -70,7 +70,7 @@ def push_apart(row, fixed, rods, state, loads, velocities):
 def push_off_wall(row, fixed, rods, state, loads, velocities):
     """Add the force of the wall on all points that are nearer to it than d/2."""
     z, height, d = state[0][2], fixed[0], fixed[1]
-    for k in range(z.size):
+    for k in range(fixed.size - 2):
         share = (z[k] - height) / d
         q = 1.0 - 4.0 * share * share
         if q > 0.0:
@@ -95,7 +95,8 @@ def pair_energies(fixed, rods, X, out):
 
 def wall_energies(fixed, rods, X) -> np.ndarray:
     """Return the energy (R,) of each rod at the wall."""
-    q = np.maximum(1.0 - (2.0 * (X[2] - fixed[0]) / fixed[1]) ** 2, 0.0)
+    z = X[2, : fixed.size - 2] - fixed[0]
+    q = np.maximum(1.0 - (2.0 * z / fixed[1]) ** 2, 0.0)
     return np.add.reduceat(16.0 / 35.0 * fixed[1] * fixed[2:] * q**3.5, rods[0])
 
 

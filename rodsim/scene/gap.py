@@ -3,7 +3,7 @@
 import math
 
 from rodsim.compiled.flags import BOOLS, INTS, MAT, kernel
-from rodsim.forces.blocks import BEGIN, END, MIDDLE, ROD, ROUNDING, blocks_of, distance2, span
+from rodsim.forces.spheres import BEGIN, END, MIDDLE, ROD, ROUNDING, blocks_of, distance2, span
 
 
 @kernel(f"Tuple((float64, int64, int64))({MAT}, {INTS}, {INTS}, {BOOLS}, {INTS})")

@@ -6,7 +6,7 @@ from numba import njit
 from test_gap import curves
 from twins import pairs_that_count
 
-from rodsim.forces import blocks
+from rodsim.forces import spheres
 from rodsim.forces.near import pairs_within
 from rodsim.nodes import lay_out
 
@@ -23,10 +23,10 @@ def scene(kind, seed):
 @njit
 def near_pairs(X, rods, excluded, reach):
     """Return all pairs of points, block by block, as contact goes through them."""
-    table, radius = blocks.blocks_of(X, rods[0], rods[1])
-    found, near = [], np.empty((blocks.BLOCK**2, 2), dtype=np.uint64)
-    for a, b in blocks.near_blocks(X, table, radius, reach):
-        n = blocks.points_within(X, table, radius, a, b, rods, excluded, reach, near)
+    table, radius = spheres.blocks_of(X, rods[0], rods[1])
+    found, near = [], np.empty((spheres.BLOCK**2, 2), dtype=np.uint64)
+    for a, b in spheres.near_blocks(X, table, radius, reach):
+        n = spheres.points_within(X, table, radius, a, b, rods, excluded, reach, near)
         found.append(near[:n].copy())
     return found
 
@@ -55,10 +55,10 @@ def test_the_points_within_a_reach_are_those_of_all_pairs(kind):
 @njit
 def block_pairs(X, first, count, reach):
     """Return the pairs of blocks, looked for in both ways."""
-    table, radius = blocks.blocks_of(X, first, count)
+    table, radius = spheres.blocks_of(X, first, count)
     return (
-        blocks._all_pairs(X, table, radius, reach),
-        blocks._pairs_in_cells(X, table, radius, reach),
+        spheres._all_pairs(X, table, radius, reach),
+        spheres._pairs_in_cells(X, table, radius, reach),
     )
 
 
@@ -79,8 +79,8 @@ def test_many_blocks_are_looked_for_in_cells():
     k = np.arange(side * long)
     X = np.array([0.5 * (k // long), 0.0 * k, 0.11 * (k % long)])
     rods = lay_out((f"r{i}", long, False, 0.11, [0.7] * 6) for i in range(side))
-    table, _ = blocks.blocks_of(X, rods.first, rods.count)
-    assert len(table) > blocks.FEW
+    table, _ = spheres.blocks_of(X, rods.first, rods.count)
+    assert len(table) > spheres.FEW
     pairs = near_points(X, rods.tables, np.full(side, 8), 0.505)
     assert len(pairs) == (side - 1) * long
     assert {j - i for i, j in pairs} == {long}
