@@ -70,7 +70,9 @@ def _room(plan):
     texts = (plan.case.source, plan.case.resolved, plan.case.inputs, *plan.case.overrides)
     count = plan.value_bytes() + FRAME_BYTES * len(plan.times) + 4 * sum(map(len, texts))
     count += 2 * sum(np.asarray(value).nbytes for value in plan.checkpoint.values())
-    count += sum(array.nbytes for kept in plan.arrays.values() for array in kept.values())
+    kept = [*plan.arrays.values(), *plan.bodies.values()]
+    count += sum(np.asarray(array).nbytes for arrays in kept for array in arrays.values())
+    count += ROD_BYTES * len(plan.bodies)
     count += POINT_BYTES * (plan.points + plan.tracers) + ROD_BYTES * len(plan.rods)
     return count + FILE_BYTES
 
@@ -98,6 +100,8 @@ def _fill(file, plan):
     _add_root(file)
     _add_case(file.create_group("case"), plan)
     _add_rods(file.create_group("rods"), plan)
+    if plan.bodies:
+        _add_bodies(file.create_group("bodies"), plan.bodies)
     _add_series(file, plan)
     _add_runtime(file.create_group("runtime"))
     allocate(file.create_group("checkpoint"), plan.checkpoint)
@@ -143,6 +147,17 @@ def _add_rods(group, plan):
         attrs["shear"], attrs["stretch"] = [b1, b2], b3
         for name, array in plan.arrays.get(rod.name, {}).items():
             place[name] = array
+
+
+def _add_bodies(group, bodies):
+    for index, (name, kept) in enumerate(bodies.items()):
+        place = group.create_group(name)
+        place.attrs["index"] = np.int64(index)
+        for key, value in kept.items():
+            if np.ndim(value):
+                place[key] = value
+            else:
+                place.attrs[key] = float(value)
 
 
 def _add_series(file, plan):

@@ -47,7 +47,8 @@ def coincident(scene) -> tuple[int, int] | None:
     That is within 1e-6 of the smallest spacing. Points are sorted along a direction that is
     parallel to nothing, so that only those next to each other there have to be looked at.
     """
-    position, limit = scene.initial.position, COINCIDENT * scene.rods.spacing.min()
+    position = scene.initial.position[:, : scene.rods.points]
+    limit = COINCIDENT * scene.rods.spacing.min()
     along = DIRECTION @ position
     order = np.argsort(along, kind="stable")
     for step in range(1, len(order)):
