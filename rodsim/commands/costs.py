@@ -21,9 +21,9 @@ def describe_costs(machine, threads: int | None = None) -> list[str]:
         return ["run: its first step fails", *_stiffness(found, rate, "")]
     several = f"{cost.threads} thread{'s' * (cost.threads > 1)}"
     lines = [
-        f"run: about {span(cost.seconds)} on {several} (mostly within a factor of 2) after a start "
-        f"of a second or two: {cost.evaluations:.3g} evaluations of {span(cost.each)}, "
-        f"{cost.frames} frames",
+        f"run: about {span(cost.seconds)} on {several}, mostly within a factor of 2; before that, "
+        "a second or two to start",
+        f"{rounded(cost.evaluations)} evaluations of {span(cost.each)}, {cost.frames} frames; "
         f"memory about {size(cost.memory)}, output {size(cost.disk)}",
     ]
     return [*lines, *_stiffness(found, rate, _saving(machine, cost, found.rate))]
@@ -33,6 +33,11 @@ def span(seconds: float) -> str:
     """Return a time as it is read, with two digits: 18 minutes, 0.34 ms."""
     name, unit = next((s for s in SPANS if seconds >= 1.5 * s[1]), SPANS[-1])
     return f"{float(f'{seconds / unit:.2g}'):g} {name}"
+
+
+def rounded(count: float) -> str:
+    """Return a number of evaluations with three digits."""
+    return f"{count:.3g}" if count >= 1e6 else f"{float(f'{count:.3g}'):.0f}"
 
 
 def _stiffness(found, rate, saving):
@@ -51,4 +56,4 @@ def _saving(machine, cost, rate):
         return f", and the longest stable step be {now / rate:.2g} times as long"
     steps = cost.made + cost.ahead
     share = evaluations_of(steps, method, rate) / evaluations_of(steps, method, now)
-    return f", and {share * cost.evaluations:.3g} evaluations"
+    return f", and {rounded(share * cost.evaluations)} evaluations"

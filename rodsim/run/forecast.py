@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import resource
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from statistics import median
+from tempfile import TemporaryDirectory
 from time import perf_counter
 
 import numba
+import numpy as np
 
 from rodsim.errors import StepFailure
 from rodsim.integrators.ahead import Steps, evaluations_of, steps_ahead
+from rodsim.output import TrajectoryWriter
 from rodsim.output.build import room
 from rodsim.run.recorder import Recorder, frame_times, plan_output
 from rodsim.run.snapshot import capture
@@ -19,7 +23,6 @@ from rodsim.run.snapshot import capture
 EVALUATIONS = 300  # of the first steps
 PAIRS, FEWEST = 2e9, 40  # of points: in large scenes fewer evaluations, but not less than this
 SAMPLES = 5  # of a frame
-WRITE_SECONDS = 3e-4  # of a frame and its checkpoint in the file, beside computing them
 
 
 @dataclass(frozen=True)
@@ -47,7 +50,7 @@ def forecast(machine, threads: int | None = None) -> Forecast | None:
 
     Makes its first steps: some 300 evaluations, fewer where they take long.
     """
-    case, method = machine.case, machine.integrator.method
+    case, scene, method = machine.case, machine.system.scene, machine.integrator.method
     machine.gap.notify = lambda text: None
     with machine.threads(threads):
         try:
@@ -55,15 +58,18 @@ def forecast(machine, threads: int | None = None) -> Forecast | None:
         except StepFailure:
             return None
         count = machine.system.evaluations
-        frame_seconds, used = _frame_seconds(machine, done[-1][0]), numba.get_num_threads()
+        recorder = Recorder(machine, perf_counter(), 0.0)
+        plan = plan_output(case, scene, capture(machine, recorder, scene.initial))
+        frame_seconds, used = _frame_seconds(recorder, plan, done[-1][0]), numba.get_num_threads()
     times = [(step.end.time, step.size) for step, _, _ in done]
     ahead = steps_ahead(machine.system, machine.integrator, times, case.time.end)
     count += evaluations_of(ahead, method, machine.limits.rate)
-    each = median(seconds / evaluations for _, evaluations, seconds in done)
+    timed = done[1:] or done  # the first step reads what is kept from then on
+    each = sum(row[2] for row in timed) / sum(row[1] for row in timed)
     frames = len(frame_times(case.time.end, case.interval))
-    total = count * each + frames * (frame_seconds + WRITE_SECONDS)
+    total = count * each + frames * frame_seconds
     made = [(size, 1) for _, size in times]
-    return Forecast(total, count, each, frames, used, _memory(), _disk(machine), made, ahead)
+    return Forecast(total, count, each, frames, used, _memory(), room(plan), made, ahead)
 
 
 def _first_steps(machine):
@@ -83,22 +89,21 @@ def _first_steps(machine):
     return done
 
 
-def _frame_seconds(machine, step):
-    """Return the seconds that computing a frame takes."""
+def _frame_seconds(recorder, plan, step):
+    """Return the seconds that a frame and its checkpoint take, in a file that is not kept."""
+    few = replace(plan, times=np.resize(plan.times, SAMPLES))
     samples = []
-    for _ in range(SAMPLES):
-        begin = perf_counter()
-        state, rates = step.at(step.end.time), step.velocities_at(step.end.time)
-        machine.system.observe(state, rates)
-        machine.gap.measure(state)
-        samples.append(perf_counter() - begin)
+    with TemporaryDirectory() as folder, _writer(folder, few) as recorder.writer:
+        for _ in range(SAMPLES):
+            begin = perf_counter()
+            recorder.initial(step.end)
+            recorder.checkpoint(plan.checkpoint)
+            samples.append(perf_counter() - begin)
     return median(samples)
 
 
-def _disk(machine):
-    scene = machine.system.scene
-    snapshot = capture(machine, Recorder(machine, perf_counter(), 0.0), scene.initial)
-    return room(plan_output(machine.case, scene, snapshot))
+def _writer(folder, plan):
+    return TrajectoryWriter.create(Path(folder) / "frames.h5", plan)
 
 
 def _memory():

@@ -34,10 +34,10 @@ def text_of(*arguments):
     [
         ("open_rod", (), 1.3),
         ("sedimenting_fibre", (), 1.3),
-        ("fibre_settling_on_wall", (), 1.5),
+        pytest.param("fibre_settling_on_wall", (), 1.5, marks=pytest.mark.long),
         ("tethered_pair", ("time.tolerance=1e-6",), 1.5),
-        ("plasmid", (), 1.5),
-        ("two_flagella", ("rods.left.shape.points=61", "time.tolerance=1e-6"), 1.5),
+        pytest.param("plasmid", (), 1.5, marks=pytest.mark.long),
+        ("two_flagella", ("rods.left.shape.points=31", "time.tolerance=1e-6"), 1.5),
     ],
 )
 def test_evaluations_are_those_of_the_run(config, changes, within, tmp_path):
@@ -129,13 +129,13 @@ def test_the_commands_say_it(command):
     assert "run: about " in said
     assert "evaluations of" in said
     assert ", 101 frames" in said
-    assert "memory about " in said
+    assert "; memory about " in said
     assert (
         "shear and stretch set the fastest rate: a quarter of them would leave 0.25 of it" in said
     )
     fixed = ("--set", "time.integrator=euler", "--set", "time.step=1e-6")
     assert "the longest stable step be 4 times as long" in text_of(*command, case, *fixed)
-    assert "on 1 thread (" in text_of("run", "--dry-run", "--threads", 1, case)
+    assert "on 1 thread, " in text_of("run", "--dry-run", "--threads", 1, case)
 
 
 @pytest.mark.parametrize(
