@@ -18,7 +18,7 @@ def describe_costs(machine, threads: int | None = None) -> list[str]:
     with machine.threads(threads):
         found = stiffest(scene, rate)
     if cost is None:
-        return ["run: its first step fails", *_stiffness(found, rate, "")]
+        return ["run: its first steps fail", *_stiffness(found, rate, "")]
     several = f"{cost.threads} thread{'s' * (cost.threads > 1)}"
     lines = [
         f"run: about {span(cost.seconds)} on {several}, mostly within a factor of 2; before that, "

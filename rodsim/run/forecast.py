@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import resource
 import sys
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
@@ -13,14 +14,14 @@ from time import perf_counter
 import numba
 import numpy as np
 
-from rodsim.errors import StepFailure
+from rodsim.errors import FileError, StepFailure
 from rodsim.integrators.ahead import Steps, evaluations_of, steps_ahead
 from rodsim.output import TrajectoryWriter
 from rodsim.output.build import room
 from rodsim.run.recorder import Recorder, frame_times, plan_output
 from rodsim.run.snapshot import capture
 
-EVALUATIONS = 300  # of the first steps
+EVALUATIONS, FIXED_STEPS = 300, 20  # of the first steps: so many evaluations, or fixed steps
 PAIRS, FEWEST = 2e9, 40  # of points: in large scenes fewer evaluations, but not less than this
 SAMPLES = 5  # of a frame
 
@@ -54,18 +55,17 @@ def forecast(machine, threads: int | None = None) -> Forecast | None:
     machine.gap.notify = lambda text: None
     with machine.threads(threads):
         try:
-            done = _first_steps(machine)
+            done, last = _first_steps(machine)
+            count, recorder = machine.system.evaluations, Recorder(machine, perf_counter(), 0.0)
+            plan = plan_output(case, scene, capture(machine, recorder, scene.initial))
+            frame_seconds, used = _frame_seconds(recorder, plan, last), numba.get_num_threads()
         except StepFailure:
             return None
-        count = machine.system.evaluations
-        recorder = Recorder(machine, perf_counter(), 0.0)
-        plan = plan_output(case, scene, capture(machine, recorder, scene.initial))
-        frame_seconds, used = _frame_seconds(recorder, plan, done[-1][0]), numba.get_num_threads()
-    times = [(step.end.time, step.size) for step, _, _ in done]
+    times = [(time, size) for time, size, _, _ in done]
     ahead = steps_ahead(machine.system, machine.integrator, times, case.time.end)
     count += evaluations_of(ahead, method, machine.limits.rate)
     timed = done[1:] or done  # the first step reads what is kept from then on
-    each = sum(row[2] for row in timed) / sum(row[1] for row in timed)
+    each = sum(row[3] for row in timed) / sum(row[2] for row in timed)
     frames = len(frame_times(case.time.end, case.interval))
     total = count * each + frames * frame_seconds
     made = [(size, 1) for _, size in times]
@@ -73,27 +73,33 @@ def forecast(machine, threads: int | None = None) -> Forecast | None:
 
 
 def _first_steps(machine):
-    """Return (step, evaluations, seconds) of the first steps; an estimate of the rate counts."""
+    """Return (time of its end, size, evaluations, seconds) of each, and the last step itself."""
     system, case = machine.system, machine.case
     points = system.scene.rods.points
+    adaptive = machine.integrator.method.adaptive
     most = min(EVALUATIONS, max(FEWEST, PAIRS / points**2))
     machine.limits  # noqa: B018  (estimated before the clock starts)
     done, begin, counted = [], perf_counter(), system.evaluations
     first = counted
     for step in machine.integrator.steps(system.scene.initial, case.time.end):
         now, count = perf_counter(), system.evaluations
-        done.append((step, count - counted, now - begin))
-        if count - first >= most:
+        done.append((step.end.time, step.size, count - counted, now - begin))
+        enough = count - first >= most if adaptive else len(done) == FIXED_STEPS
+        if enough:
             break
         begin, counted = now, count
-    return done
+    return done, step
 
 
 def _frame_seconds(recorder, plan, step):
-    """Return the seconds that a frame and its checkpoint take, in a file that is not kept."""
+    """Return the seconds that a frame and its checkpoint take, in a file that is not kept.
+
+    0 where no such file can be written.
+    """
     few = replace(plan, times=np.resize(plan.times, SAMPLES))
-    samples = []
-    with TemporaryDirectory() as folder, _writer(folder, few) as recorder.writer:
+    samples = [0.0]
+    given_up = suppress(OSError, FileError)
+    with given_up, TemporaryDirectory() as folder, _writer(folder, few) as recorder.writer:
         for _ in range(SAMPLES):
             begin = perf_counter()
             recorder.initial(step.end)
