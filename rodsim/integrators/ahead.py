@@ -42,11 +42,14 @@ def steps_ahead(system, integrator, made: list[tuple[float, float]], end: float)
 
 
 def _longest(system, integrator, time, size):
-    """Return where steps stop growing: at ``max_step``, by a drive, by the number of stages."""
+    """Return where steps stop growing: at ``max_step``, by a drive, by the number of stages.
+
+    They are not shorter than those that were made.
+    """
     most = min(integrator.max_size, (MOST_STAGES**2 - 1.0) / (1.54 * integrator.fastest_rate))
     far = system.scene.parts.travel(time, size)
     share = min(MOST_TRAVEL, TRAVEL * integrator.tolerance ** (1.0 / 3.0))
-    return min(most, size * share / far) if far > 0.0 else most
+    return min(most, size * max(1.0, share / far)) if far > 0.0 else most
 
 
 def evaluations_of(steps: Steps, method, rate: float) -> float:
