@@ -1,8 +1,8 @@
 """The kinds of parts, in the order in which they act: one line each.
 
-A kind is a file in ``forces/`` or ``flows/`` with its words in the case file, its numbers, its
-kernel, its energy or work. ``RODSIM_PARTS``, names of modules with commas between them, adds kinds
-of your own.
+A kind is a file in ``forces/``, ``flows/`` or ``blocks/`` with its words in the case file, its
+numbers, its kernel, its energy or work. ``RODSIM_PARTS``, names of modules with commas between
+them, adds kinds of your own.
 """
 
 from __future__ import annotations
@@ -19,6 +19,9 @@ KINDS = (
     "rodsim.forces.loads",
     "rodsim.forces.tethers",
     "rodsim.forces.contact",
+    "rodsim.blocks.build",
+    "rodsim.blocks.build:START",
+    "rodsim.blocks.build:END",
     "rodsim.flows.fluid",
     "rodsim.flows.background",
 )
@@ -50,7 +53,13 @@ class Kind:
 def kinds() -> tuple[Kind, ...]:
     """Return all kinds, the user's own last."""
     own = [name.strip() for name in os.environ.get("RODSIM_PARTS", "").split(",")]
-    return (*(import_module(name).KIND for name in KINDS), *map(_own, filter(None, own)))
+    return (*map(_kind, KINDS), *map(_own, filter(None, own)))
+
+
+def _kind(name: str) -> Kind:
+    """Return the KIND of a module, or another one that it has, as ``module:NAME``."""
+    module, _, which = name.partition(":")
+    return getattr(import_module(module), which or "KIND")
 
 
 def _own(name: str) -> Kind:

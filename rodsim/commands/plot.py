@@ -36,11 +36,14 @@ WHAT = ("shapes", "energy", "curvature", "twist", "speed")
               "(along D1).")
 @click.option("--colour", "--color", type=click.Choice(("time", "curvature", "twist")),
               default="time", show_default=True, help="What colours mean.")
+@click.option("--directors", is_flag=True,
+              help="Draw D1 (red) and D2 (blue) of the triads as arrows on the shapes.")
 @click.option("--overlay", is_flag=True, help="Draw all times over each other, not side by side.")
 @click.option("--fps", type=click.FloatRange(0.1, 120), default=20, show_default=True,
               help="Frames a second of a movie.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress, no message.")
-def plot(output, picture, what, frames, at, view, kind, colour, overlay, fps, quiet):
+def plot(output, picture, what, frames, at, view, kind, colour, directors, overlay,
+         fps, quiet):
     # fmt: on
     """Draw a run: its shapes, as a still or a movie, energies, speed, curvature, twist.
 
@@ -52,7 +55,7 @@ def plot(output, picture, what, frames, at, view, kind, colour, overlay, fps, qu
     prepare_numba()
     from rodsim.plotting import pictures
 
-    look = {"frames": frames, "view": view, "kind": kind, "colour": colour}
+    look = {"frames": frames, "view": view, "kind": kind, "colour": colour, "directors": directors}
     if picture.suffix in MOVIES:
         from rodsim.progress import make_progress
 

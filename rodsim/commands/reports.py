@@ -23,17 +23,19 @@ MOST_RODS = 50  # described one by one
 MOST_POINTS = 600  # of a rod whose linking number is told: it takes all pairs
 
 
-def describe_case(case, refuse=False) -> str:
-    """Return the resolved scene, its fastest rate, and the stable step of every integrator.
+def describe_case(case, refuse=False, threads=None) -> str:
+    """Return the resolved scene, its fastest rate, stable steps, and what a run will cost.
 
     ``refuse`` : raise CaseError for what a run would refuse, a fixed step above its limit.
+    ``threads`` : of the run, None for as many as the scene is worth.
     """
+    from rodsim.commands.costs import describe_costs
     from rodsim.commands.geometry import describe_start
-    from rodsim.integrators.limits import check_step, stability
-    from rodsim.scene.system import RodSystem
+    from rodsim.integrators.limits import check_step
+    from rodsim.run.machine import Machine
 
     scene = build_scene(case)
-    system = RodSystem(scene)
+    machine = Machine(case, scene, force=False)
     unit = case.units
     lines = [case.title] if case.title else []
     lines += [*describe_parameters(case), *describe_rods(case, scene)]
@@ -44,7 +46,7 @@ def describe_case(case, refuse=False) -> str:
         f"epsilon {scene.epsilon:.6g} {unit.length} "
         f"= {scene.epsilon / scene.rods.spacing[0]:.4g} spacings"
     )
-    lines += describe_start(scene, system, unit.names)
+    lines += describe_start(scene, machine.system, unit.names)
     if scene.wall is not None:
         lines.append(describe_wall(scene, unit.length))
     if scene.parts.apart:
@@ -61,10 +63,11 @@ def describe_case(case, refuse=False) -> str:
     how = f"{option} {getattr(time, option):g}"
     frames = len(frame_times(time.end, case.interval))
     lines.append(f"time: to {time.end:g} {unit.time} by {time.integrator}, {how}; {frames} frames")
-    limits = stability(system)
+    limits = machine.limits
     if refuse:
         lines += [f"warning: {problem}" for problem in check_step(case, limits)]
-    return "\n".join([*lines, *describe_limits(limits, unit.time)])
+    lines += describe_limits(limits, unit.time)
+    return "\n".join([*lines, *describe_costs(machine, threads)])
 
 
 def _acting(parts) -> str:

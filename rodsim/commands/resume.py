@@ -1,5 +1,7 @@
 """``rodsim resume``."""
 
+from time import perf_counter
+
 import click
 
 from rodsim.commands.common import (
@@ -26,12 +28,12 @@ def resume(output, overrides, threads, max_wall, quiet):
     prepare_numba()
     from rodsim.commands.console import Console
     from rodsim.run.past import open_past
-    from rodsim.run.simulate import resume
+    from rodsim.run.simulate import go_on
 
+    started = perf_counter()
     with open_past(output, overrides) as past:
-        case, complete = past.case, past.complete
-    if complete:
-        quiet or say(f"{output}: is finished; a later end: --set time.end=...")
-        return
-    with Console(output, quiet, max_wall).about(case, output.name) as console:
-        resume(output, overrides=overrides, threads=threads, listener=console)
+        if past.complete:
+            quiet or say(f"{output}: is finished; a later end: --set time.end=...")
+            return
+        with Console(output, quiet, max_wall).about(past.case, output.name) as console:
+            go_on(past, started, threads, console)

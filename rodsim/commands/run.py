@@ -32,7 +32,9 @@ from rodsim.files import DEFAULT_OUTPUT
 @max_wall_option
 @click.option("--overwrite", is_flag=True, help="Replace an existing output file.")
 @click.option("--force", is_flag=True, help="Run also with a fixed step above its limit.")
-@click.option("--dry-run", is_flag=True, help="Check the case and say what it would do, no more.")
+@click.option(
+    "--dry-run", is_flag=True, help="Check the case and say what it would do and cost, no more."
+)
 @click.option("-q", "--quiet", is_flag=True, help="No progress and no summary.")
 def run(case_path, output, overrides, threads, max_wall, overwrite, force, dry_run, quiet):
     """Run a case and write its trajectory, energies and balances to an HDF5 file."""
@@ -42,7 +44,7 @@ def run(case_path, output, overrides, threads, max_wall, overwrite, force, dry_r
     if dry_run:
         from rodsim.commands import reports
 
-        say(reports.describe_case(case, refuse=not force), err=False)
+        say(reports.describe_case(case, not force, threads), err=False)
         return
     from rodsim.commands.console import Console
     from rodsim.run.simulate import simulate

@@ -33,33 +33,45 @@ BOOLS = "boolean[::1]"
 RODS = f"Tuple(({INTS}, {INTS}, {BOOLS}, {VEC}, {MAT}))"  # nodes.Rods.tables
 STATE = f"Tuple(({MAT}, {TRIADS}, {MAT}))"  # position, director, tracer
 PART = f"void({VEC}, {VEC}, {RODS}, {STATE}, {MAT}, UniTuple({MAT}, 2))"  # compiled.kernels
+SUM = f"void({MAT}, {MAT}, {MAT}, float64, float64, float64, {MAT})"  # compiled.kernels
 ONE = np.uint64(1)
 
 SUM_FLAGS = {"reassoc", "contract", "arcp", "nsz"}
 
 kernel = partial(cached_njit, error_model="numpy")
 parallel_kernel = partial(cached_njit, error_model="numpy", parallel=True, fastmath=SUM_FLAGS)
+summed = partial(cached_njit, error_model="numpy", fastmath=SUM_FLAGS)  # the same, reordered
 unsigned = kernel  # without a signature: compiled with whatever calls it
 inline = partial(cached_njit, error_model="numpy", inline="always")
 
 
-def compile_part(function):
-    """Compile a part, or read it from the cache."""
-    return cfunc(PART, cache=keeps(function), error_model="numpy")(function)
+def compile_part(function, signature):
+    """Compile a part or a sum, or read it from the cache."""
+    return cfunc(signature, cache=keeps(function), error_model="numpy")(function)
+
+
+def _jump(context, builder, signature, arguments):
+    """Write the call of the function at the first argument, with the others."""
+    kinds = [context.get_value_type(kind) for kind in signature.args[1:]]
+    function = ir.FunctionType(context.get_value_type(types.none), kinds)
+    place = builder.inttoptr(arguments[0], function.as_pointer())
+    builder.call(place, arguments[1:])
+    return context.get_dummy_value()
 
 
 @intrinsic
 def _call_at(typing, address, row, fixed, rods, state, loads, velocities):
     """Call the part whose machine code lies at an address."""
-
-    def code(context, builder, signature, arguments):
-        kinds = [context.get_value_type(kind) for kind in signature.args[1:]]
-        function = ir.FunctionType(context.get_value_type(types.none), kinds)
-        place = builder.inttoptr(arguments[0], function.as_pointer())
-        builder.call(place, arguments[1:])
-        return context.get_dummy_value()
-
-    return types.void(types.int64, row, fixed, rods, state, loads, velocities), code
+    arguments = (row, fixed, rods, state, loads, velocities)
+    return types.void(types.int64, *arguments), _jump
 
 
+@intrinsic
+def _sum_at(typing, address, targets, sources, loads, epsilon, viscosity, wall, out):
+    """Call the sum whose machine code lies at an address."""
+    arguments = (targets, sources, loads, epsilon, viscosity, wall, out)
+    return types.void(types.int64, *arguments), _jump
+
+
+call_sum = interpreted if jit_is_off() else _sum_at
 call_part = interpreted if jit_is_off() else _call_at

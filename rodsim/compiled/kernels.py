@@ -13,6 +13,12 @@ A *force* adds to the loads, a *flow* reads them and adds to the velocities; nei
 the arrays are clear before the first part. A part does not raise (the call swallows it) and does
 not depend on the number of threads.
 
+A *sum* is a function of another signature, the velocities at targets by point loads at sources:
+
+    sum(targets, sources, loads, epsilon, viscosity, wall, out)
+
+Parts that need sums call them by address too, so that they are compiled once for every fluid.
+
 The loop is compiled once for all scenes, and a part once for all: a scene compiles or loads just
 the parts that it lists. Importing this does not import Numba, so that the words of a part in the
 case file and its numbers may stand beside its kernel.
@@ -21,7 +27,7 @@ case file and its numbers may stand beside its kernel.
 from __future__ import annotations
 
 import os
-from functools import cached_property
+from functools import cached_property, partial
 from importlib import import_module
 
 _INTERPRETED: list = []  # parts by number, where the JIT is off
@@ -33,10 +39,10 @@ def jit_is_off() -> bool:
 
 
 class Kernel:
-    """The function of a part, compiled when its address is first asked for."""
+    """The function of a part or a sum, compiled when its address is first asked for."""
 
-    def __init__(self, function):
-        self.function = function
+    def __init__(self, function, signature="PART"):
+        self.function, self.signature = function, signature
         self.__doc__ = function.__doc__
 
     def __call__(self, *arguments):
@@ -58,12 +64,13 @@ class Kernel:
 
     @cached_property
     def _compiled(self):
-        from rodsim.compiled.flags import compile_part
+        from rodsim.compiled import flags
 
-        return compile_part(self.function)
+        return flags.compile_part(self.function, getattr(flags, self.signature))
 
 
 part = Kernel  # as a decorator
+pair_sum = partial(Kernel, signature="SUM")
 
 
 def address_of(kernel: Kernel | str) -> int:
@@ -74,6 +81,6 @@ def address_of(kernel: Kernel | str) -> int:
     return kernel.address
 
 
-def interpreted(address, row, fixed, rods, state, loads, velocities):
-    """Call a part where the JIT is off."""
-    _INTERPRETED[address](row, fixed, rods, state, loads, velocities)
+def interpreted(address, *arguments):
+    """Call a part or a sum where the JIT is off."""
+    _INTERPRETED[address](*arguments)

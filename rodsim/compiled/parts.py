@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -10,7 +11,29 @@ import numpy as np
 from rodsim.compiled.kernels import Kernel
 from rodsim.compiled.row import Row
 
-FORCE, FLOW, TRACERS = "force", "flow", "tracers"
+PLACE, FORCE, RELEASE, FLOW, HOLD, TRACERS = SIDES = (
+    "place", "force", "release", "flow", "hold", "tracers"
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """Numbers whose integrals over time the ledger keeps beside works and dissipation.
+
+    shape : how many they are. joins : the ledger's own entries to which the integral is added as
+    well. shown : whether it is an observable of its own name.
+    """
+
+    name: str
+    dimension: tuple[int, int, int]
+    joins: tuple[str, ...] = ()
+    shown: bool = True
+    shape: tuple[int, ...] = ()
+
+    @property
+    def count(self) -> int:
+        """How many numbers they are."""
+        return math.prod(self.shape)
 
 
 @dataclass(frozen=True)
@@ -46,8 +69,10 @@ class Apart:
 class Part:
     """One part of a scene: its kernel and its numbers.
 
-    side : ``FORCE`` adds to the loads, ``FLOW`` to the velocities of the rods, ``TRACERS`` to those
-    of tracers, and of any points of the fluid.
+    side : ``FORCE`` adds to the loads, ``FLOW`` to the velocities of the nodes, ``TRACERS`` to
+    those of tracers, and of any points of the fluid. Three more sides are for constraints:
+    ``PLACE`` moves nodes to where they are held, ``RELEASE`` takes the loads off them, ``HOLD``
+    finds the loads and velocities that the constraints ask for.
     kernel : or where it is, ``module:name``. row, fixed : what it is called with.
     drive : what a case file calls its row.
     external : it acts from outside, so the ledger is kept: what the fluid dissipates, and the work
@@ -56,6 +81,13 @@ class Part:
     series : those beyond the ones of every scene, (name, shape, dimension) each.
     pressure : called with (points (3, T), sources (3, N), loads (6, N), t), returns its share of
     the pressure (T,).
+    sums : sums that it calls, ``module:name`` each, whose addresses are put into the first places
+    of ``fixed`` (an address is a whole number that float64 holds exactly).
+    gauges : what it leaves in the last places of ``fixed``. Parts of a scene that
+    share one array ``fixed`` share their numbers, what they leave there included.
+    report : called with (fixed, rates, state), its numbers after an evaluation and its gauges'
+    rates where they are known better than from there, else None; returns observables by name, and
+    what the force and torque (6,) about the origin are beyond those of that evaluation.
     guard, apart : what it asks of steps, how far it keeps rods apart, if it does.
     warnings : Problems of the case that do not stop a run.
     """
@@ -71,6 +103,9 @@ class Part:
     observe: Callable | None = None
     series: tuple = ()
     pressure: Callable | None = None
+    sums: tuple[str, ...] = ()
+    gauges: tuple[Gauge, ...] = ()
+    report: Callable | None = None
     guard: Guard | None = None
     apart: Apart | None = None
     warnings: tuple = ()
@@ -83,20 +118,23 @@ class Part:
     @property
     def works(self) -> bool:
         """Whether its work on the rods is counted."""
-        return self.external and not self.potential and self.side != TRACERS
+        return self.external and not self.potential and self.side in (FORCE, FLOW)
 
 
 class PartList(tuple):
-    """The parts of a scene in the order in which they act: forces before flows."""
+    """The parts of a scene in the order in which they act, side by side in that of ``SIDES``."""
 
     def __new__(cls, parts):
         """Sort them; within a side, the order given stays."""
-        order = (FORCE, FLOW, TRACERS)
-        return super().__new__(cls, sorted(parts, key=lambda part: order.index(part.side)))
+        return super().__new__(cls, sorted(parts, key=lambda part: SIDES.index(part.side)))
 
     def of(self, *sides: str) -> PartList:
         """Return those of some sides."""
         return PartList(part for part in self if part.side in sides)
+
+    def without(self, side: str) -> PartList:
+        """Return those of all sides but one."""
+        return PartList(part for part in self if part.side != side)
 
     @property
     def external(self) -> bool:
@@ -117,6 +155,21 @@ class PartList(tuple):
     def apart(self) -> Apart | None:
         """How far rods are kept apart, or None where nothing does."""
         return next((part.apart for part in self if part.apart), None)
+
+    @property
+    def gauges(self) -> list[Gauge]:
+        """What is integrated beside works and dissipation, in the order of their accounts."""
+        return [gauge for part in self for gauge in part.gauges]
+
+    @property
+    def gauge_count(self) -> int:
+        """How many numbers the gauges are."""
+        return sum(gauge.count for gauge in self.gauges)
+
+    @property
+    def constrained(self) -> bool:
+        """Whether any node is held."""
+        return any(part.side == HOLD for part in self)
 
     @property
     def driven(self) -> bool:

@@ -66,6 +66,11 @@ class Background:
             outputs.append(graph.apply("*", half, graph.apply("-", *slopes)))
         return table_of(graph, outputs)
 
+    def numbers(self, planar: bool) -> np.ndarray:
+        """Return the fixed numbers of :mod:`rodsim.flows.carried`."""
+        table, lines = self.table()
+        return np.concatenate([[float(planar)], lines, table.ravel()])
+
     def laplacian(self) -> list | None:
         """Return lap u_inf as three functions of t, or None where it depends on the place."""
         found = []
@@ -85,8 +90,7 @@ def _build(case, scene) -> list[Part]:
         return []
     flow = Background(case.fluid.flow)
     _check_flow(flow, case, scene)
-    table, lines = flow.table()
-    fixed = np.concatenate([[float(scene.planar)], lines, table.ravel()])
+    fixed = flow.numbers(scene.planar)
     row = _time_row(flow, scene)
     home = "rodsim.flows.carried:"
     return [
@@ -96,12 +100,13 @@ def _build(case, scene) -> list[Part]:
     ]  # fmt: skip
 
 
-class _Now:
+class Now:
     """The time, as an entry of a row."""
 
     uses_t = True
 
     def __call__(self, s, t):
+        """Return t."""
         return t + 0.0 * s
 
 
@@ -118,7 +123,7 @@ class _AtPlace:
 
 def _time_row(flow, scene) -> Row:
     """Return the row that is the time, 0 where the flow is steady."""
-    now = Entry(_Now() if flow.driven else 0.0, np.zeros(1), 0)
+    now = Entry(Now() if flow.driven else 0.0, np.zeros(1), 0)
     points = scene.initial.position
     places = np.linspace(0, points.shape[1] - 1, min(WATCHED, points.shape[1])).astype(int)
     watched = [

@@ -11,7 +11,7 @@ HEAD = 7  # numbers before the table: whether planar, the lines of u and w
 
 
 @kernel(f"void({VEC}, float64, {MAT}, {MAT})")
-def _carry(fixed, t, points, out):
+def carry(fixed, t, points, out):
     """Add u_inf, and w_inf where ``out`` has six rows, at points (3, n)."""
     table = fixed[HEAD:].reshape((fixed.size - HEAD) // 5, 5)
     planar = fixed[0] != 0.0
@@ -33,10 +33,10 @@ def _carry(fixed, t, points, out):
 @part
 def carry_rods(row, fixed, rods, state, loads, velocities):
     """Add u_inf and w_inf at the points of the rods."""
-    _carry(fixed, row[0], state[0], velocities[0])
+    carry(fixed, row[0], state[0], velocities[0])
 
 
 @part
 def carry_tracers(row, fixed, rods, state, loads, velocities):
     """Add u_inf at the tracers."""
-    _carry(fixed, row[0], state[2], velocities[1])
+    carry(fixed, row[0], state[2], velocities[1])

@@ -30,7 +30,7 @@ from numba import prange
 
 from rodsim.compiled.constants import ON_WALL
 from rodsim.compiled.flags import inline, parallel_kernel
-from rodsim.compiled.kernels import part
+from rodsim.compiled.kernels import pair_sum, part
 from rodsim.flows.blobs import (
     ALGEBRAIC7,
     ALGEBRAIC9,
@@ -200,6 +200,29 @@ def _tracers_part(blob):
 spatial_7, spatial_9 = (_rods_part(blob, False) for blob in (ALGEBRAIC7, ALGEBRAIC9))
 planar_7, planar_9 = (_rods_part(blob, True) for blob in (ALGEBRAIC7, ALGEBRAIC9))
 tracers_7, tracers_9 = (_tracers_part(blob) for blob in (ALGEBRAIC7, ALGEBRAIC9))
+
+
+def _pair_sum(blob, angular):
+    """Make the sum that parts call by address, with or without w; ``wall``: height, of the wall."""
+    seven = blob == ALGEBRAIC7
+
+    @pair_sum
+    def add(targets, sources, loads, epsilon, viscosity, wall, out):
+        if angular:
+            if seven:
+                SPATIAL_7(targets, sources, loads, epsilon, viscosity, wall, out)
+            else:
+                SPATIAL_9(targets, sources, loads, epsilon, viscosity, wall, out)
+        elif seven:
+            FLOW_7(targets, sources, loads, epsilon, viscosity, wall, out)
+        else:
+            FLOW_9(targets, sources, loads, epsilon, viscosity, wall, out)
+
+    return add
+
+
+sum_7, sum_9 = (_pair_sum(blob, True) for blob in (ALGEBRAIC7, ALGEBRAIC9))
+sum_u_7, sum_u_9 = (_pair_sum(blob, False) for blob in (ALGEBRAIC7, ALGEBRAIC9))
 
 
 @lru_cache

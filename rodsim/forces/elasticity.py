@@ -161,14 +161,14 @@ def point_loads(X, D, omega, rods, loads, along=UNIFORM):
 @part
 def elastic_loads(row, fixed, rods, state, loads, velocities):
     """The part of elastic rods: ``row`` is the strain twist, see :func:`point_loads`."""
-    n = state[0].shape[1]
-    _uniform_loads(state[0], state[1], row.reshape(3, n), rods, fixed.reshape(0, 0), loads)
+    omega = row.reshape(3, row.size // 3)
+    _uniform_loads(state[0], state[1], omega, rods, fixed.reshape(0, 0), loads)
 
 
 @part
 def varying_loads(row, fixed, rods, state, loads, velocities):
     """The part of rods whose moduli vary: ``fixed`` has them, see :func:`point_loads`."""
-    n = state[0].shape[1]
+    n = row.size // 3
     _varying_loads(state[0], state[1], row.reshape(3, n), rods, fixed.reshape(9, n), loads)
 
 

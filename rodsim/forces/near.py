@@ -21,11 +21,12 @@ def segments_within(reach: float, rods: Rods) -> np.ndarray:
 def pairs_within(position: np.ndarray, rods: Rods, excluded: np.ndarray, limit: float):
     """Return first (n,), second (n,), distance (n,) of points that count and are that near.
 
-    position (3, N). Points count if they are of different rods, or more than ``excluded[r]``
-    segments apart along rod r, the shorter way round a closed one; first < second. Points are
-    sorted along a direction that is parallel to nothing, so that only those next to each other
-    there have to be looked at.
+    position (3, N), points of rods first. Points count if they are of different rods, or more than
+    ``excluded[r]`` segments apart along rod r, the shorter way round a closed one; first < second.
+    Points are sorted along a direction that is parallel to nothing, so that only those next to each
+    other there have to be looked at.
     """
+    position = position[:, : rods.points]
     along = DIRECTION @ position
     order = np.argsort(along, kind="stable")
     found = [(np.zeros(0, int), np.zeros(0, int), np.zeros(0))]

@@ -34,7 +34,7 @@ def at_start(case, scene, apart: Apart) -> list[Problem]:
 def _closest(scene, apart):
     """Return (distance, rod, words) of the two points nearest to each other, None beyond d."""
     excluded = apart.excluded if apart.itself else scene.rods.count
-    position = scene.initial.position[:, : scene.rods.points]
+    position = scene.initial.position
     first, second, distance = pairs_within(position, scene.rods, excluded, apart.diameter)
     if not len(distance):
         return None

@@ -50,12 +50,20 @@ class Step:
         if self.rates is None:
             return None
         x = (time - self.start.time) / self.size
-        f0, f1 = self.rates
-        slope = 6.0 * x * (1.0 - x) / self.size * self.increment
-        slope += (1.0 - x) * (1.0 - 3.0 * x) * f0 + x * (3.0 * x - 2.0) * f1
-        shift, turn, _ = self.system.split(slope)
+        shift, turn, _ = self.system.split(self._slope(x))
         theta = self.system.split(self._increment(x))[1]
         return np.concatenate([shift, angular_velocity(theta, turn)])
+
+    def powers_at(self, time: float) -> np.ndarray | None:
+        """Return the rates of the ledger (W,) at a time inside the step, as ``velocities_at``."""
+        if self.rates is None:
+            return None
+        return self._slope((time - self.start.time) / self.size)[self.system.ledger]
+
+    def _slope(self, x):
+        f0, f1 = self.rates
+        slope = 6.0 * x * (1.0 - x) / self.size * self.increment
+        return slope + (1.0 - x) * (1.0 - 3.0 * x) * f0 + x * (3.0 * x - 2.0) * f1
 
     def _increment(self, x):
         f0, f1 = self.rates

@@ -35,11 +35,11 @@ def build_file(path: Path, plan: Plan) -> h5py.File:
 
     Raises FileError where it cannot fit or cannot be written; then no file is left.
     """
-    needed = _room(plan)
+    needed = room(plan)
     free = shutil.disk_usage(path.parent).free
     if needed > free:
         raise FileError(
-            f"the output needs {_size(needed)}, {_size(free)} are free: "
+            f"the output needs {size(needed)}, {size(free)} are free: "
             "give a longer output.interval or fewer output.fields"
         )
     file = h5py.File(path, "x", locking=False)
@@ -66,16 +66,20 @@ def trim(file: h5py.File) -> None:
     os.ftruncate(descriptor(file), file.id.get_filesize())
 
 
-def _room(plan):
+def room(plan: Plan) -> int:
+    """Return the bytes that an output file takes while it is written, or a little more."""
     texts = (plan.case.source, plan.case.resolved, plan.case.inputs, *plan.case.overrides)
     count = plan.value_bytes() + FRAME_BYTES * len(plan.times) + 4 * sum(map(len, texts))
     count += 2 * sum(np.asarray(value).nbytes for value in plan.checkpoint.values())
-    count += sum(array.nbytes for kept in plan.arrays.values() for array in kept.values())
+    kept = [*plan.arrays.values(), *plan.bodies.values()]
+    count += sum(np.asarray(array).nbytes for arrays in kept for array in arrays.values())
+    count += ROD_BYTES * len(plan.bodies)
     count += POINT_BYTES * (plan.points + plan.tracers) + ROD_BYTES * len(plan.rods)
     return count + FILE_BYTES
 
 
-def _size(count):
+def size(count: float) -> str:
+    """Return a number of bytes as it is read."""
     for unit in ("bytes", "kB", "MB", "GB", "TB"):
         if count < 999.5:
             return f"{count:.3g} {unit}"
@@ -98,6 +102,8 @@ def _fill(file, plan):
     _add_root(file)
     _add_case(file.create_group("case"), plan)
     _add_rods(file.create_group("rods"), plan)
+    if plan.bodies:
+        _add_bodies(file.create_group("bodies"), plan.bodies)
     _add_series(file, plan)
     _add_runtime(file.create_group("runtime"))
     allocate(file.create_group("checkpoint"), plan.checkpoint)
@@ -143,6 +149,17 @@ def _add_rods(group, plan):
         attrs["shear"], attrs["stretch"] = [b1, b2], b3
         for name, array in plan.arrays.get(rod.name, {}).items():
             place[name] = array
+
+
+def _add_bodies(group, bodies):
+    for index, (name, kept) in enumerate(bodies.items()):
+        place = group.create_group(name)
+        place.attrs["index"] = np.int64(index)
+        for key, value in kept.items():
+            if np.ndim(value):
+                place[key] = value
+            else:
+                place.attrs[key] = float(value)
 
 
 def _add_series(file, plan):

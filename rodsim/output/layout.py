@@ -23,6 +23,7 @@ MOST_RESUMES, RESUME_BYTES = 100, 160  # room for the history; the last entry is
 TRAJECTORY = "particles/trajectory"
 TRACERS = "particles/tracers/position"
 OBSERVABLES = "observables"
+BODIES, ROTORS = "particles/bodies", "particles/rotors"
 CLOCK = f"{TRAJECTORY}/position"  # where time and step live; every other group links to them
 
 TIME, LENGTH, FORCE, ENERGY = (0, 0, 1), (0, 1, 0), (1, 1, -2), (1, 2, -2)
@@ -42,6 +43,12 @@ PER_ROD = {
     "kinetic_energy": ENERGY,  # only where the case gives a density
     "power": (1, 2, -3),
     "length": LENGTH,
+}
+OF_BODIES = {
+    "position": LENGTH,  # of the centre
+    "orientation": (0, 0, 0),  # quaternion w, x, y, z
+    "velocity": (0, 1, -1),
+    "angular_velocity": (0, 0, -1),
 }
 BALANCES = {"net_force": FORCE, "net_torque": ENERGY}  # of all rods together: a vector
 
@@ -98,8 +105,10 @@ class Plan:
     position is always stored. units : names of the units of ``length``, ``mass`` and ``time``.
     density : whether kinetic energy is stored. checkpoint : the first state of the run, which all
     later ones are like: arrays and numbers by name. extra : observables that not every scene has,
-    (name, shape, dimension) each. arrays : by rod, what its strain twist was made from beside the
-    case's text, by name.
+    (name, shape, dimension) each, and a place in the file where that is not /observables. bodies :
+    what never changes of rigid bodies, arrays and numbers by name, by the name of the body.
+    arrays : by rod, what its strain twist was made from beside the case's text, and where its held
+    ends are at rest, by name.
     """
 
     case: CaseText
@@ -112,6 +121,7 @@ class Plan:
     checkpoint: dict
     extra: tuple = ()
     arrays: dict = field(default_factory=dict)
+    bodies: dict = field(default_factory=dict)
 
     @property
     def points(self) -> int:
@@ -134,8 +144,8 @@ class Plan:
                 yield Series(name, f"{OBSERVABLES}/{name}", (len(self.rods),), dimension)
         for name, dimension in BALANCES.items():
             yield Series(name, f"{OBSERVABLES}/{name}", (3,), dimension)
-        for name, shape, dimension in self.extra:
-            yield Series(name, f"{OBSERVABLES}/{name}", shape, dimension)
+        for name, shape, dimension, *where in self.extra:
+            yield Series(name, where[0] if where else f"{OBSERVABLES}/{name}", shape, dimension)
 
     def stored(self) -> list[Series]:
         """Return every series of the file."""

@@ -18,6 +18,7 @@ from rodsim.plotting.rod import KINDS
 from rodsim.plotting.shapes import Shapes, draw_overlay, draw_panels
 
 THICKNESS = 0.03  # of the length of the longest rod
+ARROW = 0.06  # likewise, of D^1 and D^2
 PANELS = 6
 
 
@@ -34,21 +35,21 @@ def thickness(run) -> float:
     return THICKNESS * max(rod.spacing * rod.count for rod in run.rods)
 
 
-def plot_shapes(path, out, *, frames, at, view, kind, colour, overlay):
+def plot_shapes(path, out, *, frames, at, view, kind, colour, overlay, directors=False):
     """Draw the shapes of a run: ``frames`` of them, or those nearest to the times ``at``."""
     with open_trajectory(path) as run:
         chosen = _frames(run, frames or PANELS, at)
-        camera, shapes, key = _look(run, chosen, view, kind, colour)
+        camera, shapes, key = _look(run, chosen, view, kind, colour, directors)
         title = read_title(run)
     draw = draw_overlay if overlay else draw_panels
     style.save(draw(shapes, camera, title, key if overlay or colour != "time" else None), out)
 
 
-def plot_movie(path, out, *, frames, view, kind, colour, fps, progress):
+def plot_movie(path, out, *, frames, view, kind, colour, fps, progress, directors=False):
     """Write a movie of a run, of all its frames or of ``frames`` of them."""
     with open_trajectory(path) as run:
         chosen = _frames(run, frames or run.frames, ())
-        camera, shapes, _ = _look(run, chosen, view, kind, colour)
+        camera, shapes, _ = _look(run, chosen, view, kind, colour, directors)
         title = read_title(run)
     write_movie(out, shapes, camera, fps, title, progress)
 
@@ -104,15 +105,16 @@ def _frames(run, wanted, at):
     return spread_frames(run.frames, wanted)
 
 
-def _look(run, chosen, view, kind, colour):
+def _look(run, chosen, view, kind, colour, directors):
     """Return the camera, the shapes and the key of the colours for some frames."""
     position = np.array([run.read("position", frame) for frame in chosen])
     camera = make_camera(view, position, upright=run.wall is not None)
-    kind = kind or ("line" if camera.flat or "director" not in run.fields else "tube")
+    line = camera.flat or directors or "director" not in run.fields
+    kind = kind or ("line" if line else "tube")
     if kind not in KINDS:
         raise UsageError(f"style must be one of {', '.join(KINDS)}, not {kind!r}")
     director = None
-    if kind != "line":
+    if kind != "line" or directors:
         director = np.array([run.read("director", frame) for frame in chosen])
     colours, key = _colours(run, chosen, colour)
     tracers = np.zeros((len(chosen), 0, 3))
@@ -120,7 +122,7 @@ def _look(run, chosen, view, kind, colour):
         tracers = np.array([run.read("tracers", frame) for frame in chosen])
     shapes = Shapes(
         run.time[chosen], position, director, run.rods, colours, tracers, run.units,
-        thickness(run), kind, run.wall,
+        thickness(run), kind, run.wall, directors * ARROW / THICKNESS * thickness(run),
     )  # fmt: skip
     return camera, shapes, key
 

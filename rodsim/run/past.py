@@ -21,7 +21,7 @@ from rodsim.output.reopen import extend, note_resume, reopen
 from rodsim.output.verify import whole_frames
 from rodsim.run.recorder import frame_times, plan_output
 from rodsim.scene.inputs import CHANGED, look_again, stored_digests
-from rodsim.scene.state import State
+from rodsim.scene.restore import stored_state
 
 ALLOWED = (
     "a run that goes on can have a later time.end and more output.fields, nothing else; "
@@ -92,6 +92,10 @@ class Past:
         """Return what the strain twist of a rod was made from."""
         return self.run.arrays(name)
 
+    def surface(self, name: str):
+        """Return the points (n, 3) of a body whose surface came from a file, else None."""
+        return self.run.surface(name)
+
     def shape(self, name: str, shape):
         """Return position, director, spacing, closed of a rod that began as a file, else None."""
         if shape.kind not in ("file", "curve"):
@@ -135,12 +139,10 @@ class Past:
 
     def _compute(self, system):
         """Return the function that computes the fields of an earlier frame from its triads."""
-        run, no_tracers = self.run, np.zeros((3, 0))
+        run, ledger = self.run, system.scene.ledger
 
         def fields(index):
-            position, director = run.read("position", index).T, run.read("director", index)
-            director = director.transpose(1, 2, 0).copy()
-            return system.observe(State(run.time[index], position.copy(), director, no_tracers))[0]
+            return system.observe(stored_state(run, index, ledger))[0]
 
         return fields
 

@@ -45,6 +45,7 @@ def plan_output(case, scene, checkpoint: dict) -> Plan:
         checkpoint=checkpoint,
         extra=extra_series(scene),
         arrays=scene.arrays,
+        bodies={body.name: body.stored() for body in scene.bodies},
     )
 
 
@@ -78,19 +79,19 @@ class Recorder:
         reach = last + (0.5 * step.size if step.rates is None else 1e-12 * last)
         while self.next_frame < len(times) and times[self.next_frame] <= reach:
             time = min(times[self.next_frame], last)
-            self._write(step.number, step.at(time), step.velocities_at(time))
+            self._write(step.number, step.at(time), step.velocities_at(time), step.powers_at(time))
         return self.next_frame - before
 
-    def _write(self, number, state, rates=None):
+    def _write(self, number, state, rates=None, ledger=None):
         begin = perf_counter()
         try:
-            fields, observables = self.system.observe(state, rates)
+            fields, observables = self.system.observe(state, rates, ledger)
             observables |= self.gap.measure(state)
             self.writer.write_frame(self.next_frame, number, fields, observables)
         except NotFinite as error:
             what = self.system.scene.parts.not_finite(state.time) or error.name
             raise StepFailure(f"{what} is not finite at t = {state.time:.6g}", state) from None
-        self.motion.add(number, state.time, state.position)
+        self.motion.add(number, state.time, fields["position"])
         self.next_frame += 1
         self.output_seconds += perf_counter() - begin
 

@@ -88,20 +88,25 @@ def resume(
     listener = listener or Functions(notify, stop, progress)
     started = perf_counter()
     with open_past(output, overrides) as past:
-        if past.complete:
-            return Summary("finished", past.run.frames)
-        for text in past.warnings():
-            listener.warn(text)
-        scene = build_scene(past.case, past)
-        force = bool(past.snapshot["force"])
-        machine, recorder = _prepare(past.case, scene, force, started, listener)
-        from rodsim.run.march import record
-        from rodsim.run.snapshot import restore
+        return go_on(past, started, threads, listener)
 
-        state = restore(machine, recorder, past.snapshot)
-        recorder.follow(past.run)
-        with machine.threads(threads), past.writer(machine) as recorder.writer:
-            return record(machine, state, recorder, listener)
+
+def go_on(past, started: float, threads: int | None, listener: Listener) -> Summary:
+    """Go on with a :class:`rodsim.run.past.Past`; ``started``: when, by ``perf_counter``."""
+    if past.complete:
+        return Summary("finished", past.run.frames)
+    for text in past.warnings():
+        listener.warn(text)
+    scene = build_scene(past.case, past)
+    force = bool(past.snapshot["force"])
+    machine, recorder = _prepare(past.case, scene, force, started, listener)
+    from rodsim.run.march import record
+    from rodsim.run.snapshot import restore
+
+    state = restore(machine, recorder, past.snapshot)
+    recorder.follow(past.run)
+    with machine.threads(threads), past.writer(machine) as recorder.writer:
+        return record(machine, state, recorder, listener)
 
 
 def _refuse_sources(case, output):

@@ -156,8 +156,7 @@ class Watch:
             point, what = turned, "the triad is a half-turn away from the next one"
         place = ""
         if point is not None:
-            rod, k = self.system.scene.rods.locate(point)
-            place = f", rod '{rod}', point {k}"
+            place = f", {self.system.scene.name_of(point)}"
         cause, change = remedy or self.remedy
         raise DivergedError(
             f"diverged in step {number}, after t = {before.time:.6g}{place}: {what}.\n"

@@ -49,5 +49,5 @@ def mirror_gap(scene, position) -> tuple[float, str, int]:
 
     With it the rod's name and the number of the point on it. Negative below the wall.
     """
-    lowest = int(np.argmin(position[2]))
+    lowest = int(np.argmin(position[2, : scene.rods.points]))
     return 2.0 * float(position[2, lowest] - scene.wall), *scene.rods.locate(lowest)

@@ -11,6 +11,7 @@ from rodsim.errors import CaseError
 from rodsim.nodes import lay_out
 from rodsim.registry import kinds
 from rodsim.scene.at_wall import below_wall, near_wall
+from rodsim.scene.bodies import add_nodes, build_bodies, check_bodies
 from rodsim.scene.moduli import along_rods, typical
 from rodsim.scene.neighbours import coincident
 from rodsim.scene.rods import build_rods
@@ -47,6 +48,9 @@ def build_scene(case, stored=None) -> Scene:
     if problems:
         raise CaseError(problems)
     tracer, groups = _tracers(case, rods, built)
+    bodies = build_bodies(case, rods.points, case.fluid.blob, stored)
+    arrays = {name: dict(kept) for name, kept in found.arrays.items()}
+    position, director = add_nodes(case, rods, bodies, position, director, arrays)
     scene = Scene(
         rods=rods,
         epsilon=epsilon,
@@ -59,10 +63,11 @@ def build_scene(case, stored=None) -> Scene:
         wall=case.fluid.wall and case.fluid.wall.z,
         entries=tuple(found.entries),
         along=along_rods(case, found, rods),
-        arrays=found.arrays,
+        arrays={name: kept for name, kept in arrays.items() if kept},
         warnings=tuple(found.warnings),
+        bodies=bodies,
     )
-    if problems := list(below_wall(case, scene)):
+    if problems := [*below_wall(case, scene), *(() if stored else check_bodies(case, scene))]:
         raise CaseError(problems)
     scene = replace(scene, warnings=(*scene.warnings, *near_wall(case, scene)))
     if stored is None:

@@ -7,7 +7,7 @@ import numpy as np
 from rodsim.compiled.kernels import address_of
 from rodsim.compiled.parts import FORCE, PartList
 
-ADDRESS, DRIVEN, ROW, ROW_END, FIXED, FIXED_END, ACCOUNT, IS_FLOW = range(8)  # columns
+ADDRESS, DRIVEN, ROW, ROW_END, FIXED, FIXED_END, ACCOUNT, IS_FLOW, GAUGES = range(9)  # columns
 
 
 class Calls:
@@ -18,24 +18,36 @@ class Calls:
 
     def __init__(self, parts: PartList, counted=lambda part: part.works):
         """``counted``: tells which parts have an account of their own."""
-        self._driven = [part for part in parts if part.row.driven]
-        self.table = np.zeros((len(parts), 8), dtype=np.int64)
-        blocks, places = [np.zeros(0)], _Places()
-        driven = _Places()
+        rows = {id(part.row): part.row for part in parts if part.row.driven}
+        self._driven = list(rows.values())
+        self.table = np.zeros((len(parts), 9), dtype=np.int64)
+        blocks, places, self._fixed = [np.zeros(0)], _Places(), {}
+        driven, given = _Places(), {}
         accounts = iter(range(len(parts)))
         for line, part in zip(self.table, parts, strict=True):
             line[ADDRESS], line[IS_FLOW] = address_of(part.kernel), part.side != FORCE
-            line[FIXED : FIXED_END + 1] = places.take(part.fixed.size)
-            blocks.append(part.fixed)
+            if id(part.fixed) not in self._fixed:
+                self._fixed[id(part.fixed)] = places.take(part.fixed.size)
+                blocks.append(part.fixed)
+            line[FIXED : FIXED_END + 1] = self._fixed[id(part.fixed)]
+            line[GAUGES] = sum(gauge.count for gauge in part.gauges)
             line[DRIVEN] = part.row.driven
             if part.row.driven:
-                line[ROW : ROW_END + 1] = driven.take(part.row.size)
+                if id(part.row) not in given:
+                    given[id(part.row)] = driven.take(part.row.size)
+                line[ROW : ROW_END + 1] = given[id(part.row)]
             else:
                 line[ROW : ROW_END + 1] = places.take(part.row.size)
                 blocks.append(part.row(0.0))
             line[ACCOUNT] = next(accounts) if counted(part) else -1
         self.numbers = np.concatenate(blocks)
+        for part in parts:
+            self.fixed(part)[: len(part.sums)] = [address_of(name) for name in part.sums]
         self.accounts = int((self.table[:, ACCOUNT] >= 0).sum())
+
+    def fixed(self, part) -> np.ndarray:
+        """Return the fixed numbers of a part, a view: parts may leave something in theirs."""
+        return self.numbers[slice(*self._fixed[id(part.fixed)])]
 
     @property
     def driven(self) -> bool:
@@ -46,7 +58,7 @@ class Calls:
         """Return the driven rows side by side (T, n) at the first T of the times; else (1, 0)."""
         if not self._driven:
             return NO_ROWS
-        blocks = [part.row.at(times) for part in self._driven]
+        blocks = [row.at(times) for row in self._driven]
         fewest = min(map(len, blocks))
         return blocks[0] if len(blocks) == 1 else np.hstack([block[:fewest] for block in blocks])
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rodsim.compiled.parts import FORCE, TRACERS, PartList
+from rodsim.compiled.parts import FLOW, FORCE, TRACERS, Part, PartList
 from rodsim.scene.calls import Calls
 from rodsim.scene.loop import evaluate
 from rodsim.scene.state import Scene, State
@@ -13,9 +13,9 @@ class Evaluation:
 
     def __init__(self, scene: Scene, parts: PartList):
         self.scene = scene
-        self._calls = Calls(parts, counted=lambda part: part.external and part.side != TRACERS)
-        self.external = [part for part in parts if part.external and part.side != TRACERS]
-        self.own = np.empty((self._calls.accounts, 6, scene.rods.points))
+        self._calls = Calls(parts, counted=_acts_on_rods)
+        self.external = [part for part in parts if _acts_on_rods(part)]
+        self.own = np.empty((self._calls.accounts, 6, scene.nodes))
 
     def add(self, state: State, loads: np.ndarray, u: np.ndarray, v: np.ndarray) -> None:
         """Let each part add to the loads (6, N), to u (6, N) of the rods or v (3, P) of tracers."""
@@ -23,10 +23,18 @@ class Evaluation:
         rods, geometry = self.scene.rods.tables, state.geometry
         evaluate(calls.table, calls.numbers, now, rods, geometry, loads, (u, v), self.own)
 
+    def left_by(self, part: Part) -> np.ndarray:
+        """Return the fixed numbers of a part with what its last call has left in them."""
+        return self._calls.fixed(part)
+
+
+def _acts_on_rods(part):
+    return part.external and part.side in (FORCE, FLOW)
+
 
 def loads_of(scene: Scene, state: State) -> np.ndarray:
-    """Return the forces and torques (6, N) of all points on the fluid."""
-    loads, none = np.zeros((6, scene.rods.points)), np.zeros((3, state.tracer.shape[1]))
+    """Return the forces and torques (6, N) of all nodes, before any constraint, on the fluid."""
+    loads, none = np.zeros((6, scene.nodes)), np.zeros((3, state.tracer.shape[1]))
     Evaluation(scene, scene.parts.of(FORCE)).add(state, loads, np.zeros_like(loads), none)
     return loads
 

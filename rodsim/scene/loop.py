@@ -18,7 +18,17 @@ from rodsim.compiled.flags import (
     kernel,
 )
 from rodsim.compiled.rotations import displace, rotation_vector_rate
-from rodsim.scene.calls import ACCOUNT, ADDRESS, DRIVEN, FIXED, FIXED_END, IS_FLOW, ROW, ROW_END
+from rodsim.scene.calls import (
+    ACCOUNT,
+    ADDRESS,
+    DRIVEN,
+    FIXED,
+    FIXED_END,
+    GAUGES,
+    IS_FLOW,
+    ROW,
+    ROW_END,
+)
 
 CALLS = f"{INT_MAT}, {VEC}"  # scene.calls.Calls: table, numbers
 WORK = f"Tuple(({STATE}, {MAT}, {TRIADS}))"  # a state, loads, loads or velocities of each account
@@ -82,9 +92,9 @@ def evaluate(table, numbers, driven, rods, state, loads, velocities, own):
             _add(mine, loads)
 
 
-@kernel(f"void({INT_MAT}, {MAT}, {MAT}, {TRIADS}, {VEC})")
-def powers(table, loads, velocities, own, out):
-    """Write the power of each account, then what the fluid dissipates: (Q + 1,).
+@kernel(f"void({CALLS}, {MAT}, {MAT}, {TRIADS}, {VEC})")
+def powers(table, numbers, loads, velocities, own, out):
+    """Write the power of each account, what the fluid dissipates, all gauges: (Q + 1 + G,).
 
     Of a force P = sum (g.u + m.w) with its own loads; of a flow u_inf, w_inf
     P = -sum (g.u_inf + m.w_inf) with all loads. dissipated = sum (g.u + m.w) + the P of all flows,
@@ -100,7 +110,12 @@ def powers(table, loads, velocities, own, out):
             dissipated += out[account]
         else:
             out[account] = _product(own[account], velocities)
-    out[own.shape[0]] = dissipated
+    place = own.shape[0]
+    out[place] = dissipated
+    for k in range(table.shape[0]):
+        for i in range(table[k, FIXED_END] - table[k, GAUGES], table[k, FIXED_END]):
+            place += 1
+            out[place] = numbers[i]
 
 
 @inline
@@ -151,7 +166,7 @@ def run_stages(calls, numbers, driven, rods, base, work, table, begin, end, size
         now = driven[j - begin if driven.shape[0] > 1 else 0]
         evaluate(calls, numbers, now, rods, state, loads, velocities, own)
         if f.size > tracers_end:
-            powers(calls, loads, velocities[0], own, f[tracers_end:])
+            powers(calls, numbers, loads, velocities[0], own, f[tracers_end:])
         if j < end:
             to_increments(y[:rods_end], f[:rods_end])
             _combine(table[j], size, y, Y[j % 2], f, f0, g)

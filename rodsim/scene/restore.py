@@ -9,6 +9,7 @@ import numpy as np
 from rodsim.case import Case, case_from_mapping
 from rodsim.errors import CaseError, FileError
 from rodsim.forces.contact import contact_diameter
+from rodsim.scene.bodies import stored_nodes
 from rodsim.scene.build import build_scene, epsilon_of
 from rodsim.scene.neighbours import hydrodynamic_diameter
 from rodsim.scene.state import Scene, State
@@ -59,8 +60,10 @@ def stored_state(run, frame: int, ledger: int = 0) -> State:
 
     ``ledger`` : how many numbers the ledger of its scene has; they are 0.
     """
-    position = np.ascontiguousarray(run.read("position", frame).T)
-    director = np.ascontiguousarray(run.read("director", frame).transpose(1, 2, 0))
+    places, triads = stored_nodes(run, frame)
+    position = np.ascontiguousarray(np.hstack([run.read("position", frame).T, places]))
+    director = run.read("director", frame).transpose(1, 2, 0)
+    director = np.ascontiguousarray(np.concatenate([director, triads], axis=2))
     return State(float(run.time[frame]), position, director, np.zeros((3, 0)), np.zeros(ledger))
 
 
@@ -69,6 +72,7 @@ class _Frame:
 
     def __init__(self, run, state):
         self.arrays = run.arrays
+        self.surface = run.surface
         self._rods, self._state = {rod.name: rod for rod in run.rods}, state
 
     def shape(self, name, shape):

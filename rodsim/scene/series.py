@@ -2,6 +2,7 @@
 
 from rodsim.compiled.parts import FORCE
 from rodsim.output import layout
+from rodsim.scene.bodies import nodes_series
 from rodsim.scene.neighbours import any_pair_counts
 from rodsim.scene.state import Scene
 
@@ -9,6 +10,7 @@ from rodsim.scene.state import Scene
 def extra_series(scene: Scene) -> tuple:
     """Return the observables that not every scene has: (name, shape, dimension) of each."""
     series = [entry for part in scene.parts for entry in part.series]
+    series += nodes_series(scene)
     if any_pair_counts(scene):
         series.append(("gap", (), layout.LENGTH))
     if any(part.external for part in scene.parts.of(FORCE)):
@@ -16,4 +18,5 @@ def extra_series(scene: Scene) -> tuple:
     if scene.parts.external:
         names = [*(f"{name}_work" for name in scene.parts.working), "external_work", "dissipated"]
         series += [(name, (), layout.ENERGY) for name in names]
+        series += [(g.name, g.shape, g.dimension) for g in scene.parts.gauges if g.shown]
     return tuple(series)

@@ -16,10 +16,12 @@ NO_WORK, NO_PARTS = np.zeros(0), PartList(())
 
 @dataclass
 class State:
-    """Positions and triads of all rods, one rod after another, the tracers, and the ledger.
+    """Positions and triads of all nodes, the tracers, and the ledger.
 
-    position (3, N), length; director (3, 3, N), [i, component, point] is D^(i+1); tracer (3, P);
-    work (W,): what each counted part has done and the fluid dissipated since t = 0, energy.
+    Nodes are the points of the rods, one rod after another, then what else has a place and a triad
+    (bodies). position (3, N), length; director (3, 3, N), [i, component, node] is D^(i+1); tracer
+    (3, P); work (W,): what each counted part has done since t = 0, what the fluid dissipated, and
+    the gauges of the parts, each times time.
     """
 
     time: float
@@ -42,8 +44,10 @@ class Scene:
     entries : of each rod, its strain twist, three numbers or functions of s and t.
     along (9, N) : where moduli vary or rods are at rest as they are built, six moduli and three
     rest strains (shear, stretch) of each segment.
-    arrays : by rod, what its strain twist was made from beside the case's text, by name.
+    arrays : by rod, what its strain twist was made from beside the case's text, and where its held
+    ends are at rest, by name.
     warnings : Problems that do not stop a run, and that only the geometry could tell.
+    bodies : its rigid bodies, :class:`rodsim.scene.bodies.Body`.
     """
 
     rods: Rods
@@ -59,12 +63,30 @@ class Scene:
     along: np.ndarray | None = None
     arrays: dict = field(default_factory=dict)
     warnings: tuple = ()
+    bodies: tuple = ()
     parts: PartList = NO_PARTS
 
     @property
     def ledger(self) -> int:
-        """How many numbers the ledger has: the work of each counted part, what is dissipated."""
-        return len(self.parts.working) + 1 if self.parts.external else 0
+        """How many numbers the ledger has: work of each counted part, dissipation, gauges."""
+        if not self.parts.external:
+            return 0
+        return len(self.parts.working) + 1 + self.parts.gauge_count
+
+    @property
+    def nodes(self) -> int:
+        """Number N of nodes: points of rods, then bodies."""
+        return self.initial.position.shape[1]
+
+    def name_of(self, node: int) -> str:
+        """Return what a node is, in words."""
+        beyond = node - self.rods.points
+        if beyond < 0:
+            rod, k = self.rods.locate(node)
+            return f"rod '{rod}', point {k}"
+        if beyond < len(self.bodies):
+            return f"body '{self.bodies[beyond].name}'"
+        return "the rotor of a hook"
 
     @property
     def floor(self) -> float:

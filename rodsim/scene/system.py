@@ -9,12 +9,12 @@ from time import perf_counter
 
 import numpy as np
 
-from rodsim.compiled.parts import FLOW, FORCE
+from rodsim.compiled.parts import PLACE, TRACERS
 from rodsim.compiled.passes import largest_rms
 from rodsim.compiled.rotations import displace
 from rodsim.forces.elasticity import first_half_turn
 from rodsim.scene.calls import Calls
-from rodsim.scene.evaluation import loads_of
+from rodsim.scene.evaluation import Evaluation, loads_of
 from rodsim.scene.loop import run_stages, to_increments
 from rodsim.scene.observe import Observer
 from rodsim.scene.state import Scene, State
@@ -27,8 +27,8 @@ class RodSystem:
 
     def __init__(self, scene: Scene):
         self.scene = scene
-        n, p = scene.rods.points, scene.initial.tracer.shape[1]
-        parts = scene.parts if p else scene.parts.of(FORCE, FLOW)
+        n, p = scene.nodes, scene.initial.tracer.shape[1]
+        parts = scene.parts if p else scene.parts.without(TRACERS)
         self._calls = Calls(parts)
         accounts = self._calls.accounts
         self.rod_size, self._tracers_end = 6 * n, 6 * n + 3 * p
@@ -41,10 +41,14 @@ class RodSystem:
         geometry = np.empty((3, n)), np.empty((3, 3, n)), np.empty((3, p))
         self._work = geometry, np.empty((6, n)), np.empty((accounts, 6, n))
         self._rows = None if self._calls.driven else self._calls.rows_at(np.zeros(1))
-        # Lengths count over the rod's own, those of tracers over the longest; angles in radians.
-        self.weights = np.ones(self._tracers_end)
-        self.weights[: 3 * n] = np.tile(np.repeat(1.0 / scene.rods.lengths, scene.rods.count), 3)
-        self.weights[6 * n :] = 1.0 / scene.length_scale
+        placing = scene.parts.of(PLACE)
+        self._placing = Evaluation(scene, placing) if placing else None
+        # Lengths count over the rod's own, all others over the longest; angles in radians.
+        others = 1.0 / scene.length_scale
+        scales = np.full(n, others)
+        scales[: scene.rods.points] = np.repeat(1.0 / scene.rods.lengths, scene.rods.count)
+        self.weights = np.concatenate([np.tile(scales, 3), np.ones(3 * n), np.full(3 * p, others)])
+        self._groups = _groups(scene)
 
     def zeros(self) -> np.ndarray:
         """Return the increments (or rates) of a step's start."""
@@ -52,17 +56,21 @@ class RodSystem:
 
     def split(self, y):
         """Return the views position (3, N), rotation vector (3, N), tracer (3, P) of y."""
-        rods = y[: self.rod_size].reshape(self._shape)
-        return rods[:3], rods[3:], y[self.rod_size : self._tracers_end].reshape(3, -1)
+        nodes = y[: self.rod_size].reshape(self._shape)
+        return nodes[:3], nodes[3:], y[self.rod_size : self._tracers_end].reshape(3, -1)
+
+    @property
+    def ledger(self) -> slice:
+        """Where the ledger lies in y."""
+        return slice(self._tracers_end, self.size)
 
     def size_of(self, change: np.ndarray) -> float:
         """Return how large a change of increments is: the largest root mean square of its parts.
 
-        Parts are each rod, positions over its own length and angles in radians, and all tracers,
-        over the length of the longest rod. The ledger does not count.
+        Parts are each rod, positions over its own length and angles in radians, each body and all
+        tracers, over the length of the longest rod. The ledger does not count.
         """
-        rods = self.scene.rods
-        return largest_rms(change, self.weights, rods.first, rods.count)
+        return largest_rms(change, self.weights, *self._groups)
 
     def guarded(self, increment: np.ndarray) -> float:
         """Return how much a step takes of what the parts let it do; 0 where none asks for that."""
@@ -127,8 +135,19 @@ class RodSystem:
         """Return the state with increments ``y`` from ``base``."""
         end = tuple(np.empty_like(array) for array in base.geometry)
         displace(base.geometry, y[: self._tracers_end], end)
-        return State(time, *end, base.work + y[self._tracers_end :])
+        state = State(time, *end, base.work + y[self._tracers_end :])
+        if self._placing:
+            _, loads, _ = self._work
+            self._placing.add(state, loads, loads, state.tracer)
+        return state
 
     def diagnose(self, state: State) -> int:
         """Return the first point whose triad is a half-turn from the next one's, or -1."""
         return first_half_turn(state.director, self.scene.rods.tables)
+
+
+def _groups(scene):
+    """Return first node and number of nodes of each rod, then of each node that is of none."""
+    rods = scene.rods
+    others = np.arange(rods.points, scene.nodes)
+    return np.append(rods.first, others), np.append(rods.count, np.ones_like(others))
