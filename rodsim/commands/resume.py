@@ -9,6 +9,7 @@ from rodsim.commands.common import (
     say,
     set_option,
     threads_option,
+    until_option,
 )
 
 
@@ -17,8 +18,9 @@ from rodsim.commands.common import (
 @set_option
 @threads_option
 @max_wall_option
+@until_option
 @click.option("-q", "--quiet", is_flag=True, help="No progress and no summary.")
-def resume(output, overrides, threads, max_wall, quiet):
+def resume(output, overrides, threads, max_wall, until, quiet):
     """Go on where a run stopped or was killed, in the same file and with the same bits.
 
     --set can only give a later time.end, or more output.fields.
@@ -34,4 +36,4 @@ def resume(output, overrides, threads, max_wall, quiet):
         quiet or say(f"{output}: is finished; a later end: --set time.end=...")
         return
     with Console(output, quiet, max_wall).about(case, output.name) as console:
-        resume(output, overrides=overrides, threads=threads, listener=console)
+        resume(output, overrides=overrides, threads=threads, until=until, listener=console)

@@ -12,6 +12,8 @@ from rodsim.run.listener import Functions, Listener, Summary
 from rodsim.run.past import open_past
 from rodsim.scene.build import build_scene
 
+STILL = "still"  # when a run is to end before its time
+
 
 def simulate(
     case,
@@ -20,6 +22,7 @@ def simulate(
     overwrite=False,
     threads=None,
     force=False,
+    until=None,
     notify=None,
     stop=None,
     progress=None,
@@ -34,6 +37,8 @@ def simulate(
         on (``Summary.moved``), unless ``overwrite``.
     threads : number of threads, at least 1, or None for as many as the scene is worth.
     force : run also with a fixed step above its limit of stability.
+    until : ``"still"`` ends the run before ``time.end`` when nothing moves any more, see
+        :meth:`rodsim.run.ending.Motion.still`.
     notify : called with the text of each warning; by default they are Python's own.
     stop : called after each step; returns why the run is to stop there, or an empty text.
     progress : object with ``update(fraction, note)``.
@@ -54,7 +59,9 @@ def simulate(
     scene = build_scene(case)
     for problem in scene.warnings:
         listener.warn(str(problem))
+    _check_until(until, scene)
     machine, recorder = _prepare(case, scene, force, started, listener)
+    recorder.until_still = until == STILL
     from rodsim.run.march import record
     from rodsim.run.recorder import plan_output
     from rodsim.run.snapshot import capture
@@ -74,6 +81,7 @@ def resume(
     *,
     overrides=(),
     threads=None,
+    until=None,
     notify=None,
     stop=None,
     progress=None,
@@ -93,6 +101,7 @@ def resume(
         for text in past.warnings():
             listener.warn(text)
         scene = build_scene(past.case, past)
+        _check_until(until, scene)
         force = bool(past.snapshot["force"])
         machine, recorder = _prepare(past.case, scene, force, started, listener)
         from rodsim.run.march import record
@@ -100,8 +109,17 @@ def resume(
 
         state = restore(machine, recorder, past.snapshot)
         recorder.follow(past.run)
+        recorder.until_still = until == STILL
         with machine.threads(threads), past.writer(machine) as recorder.writer:
             return record(machine, state, recorder, listener)
+
+
+def _check_until(until, scene):
+    """Raise UsageError for an end that does not come."""
+    if until not in (None, STILL):
+        raise UsageError(f"until {until!r}: a run goes on to time.end, or until {STILL!r}")
+    if until and scene.parts.driven:
+        raise UsageError("until 'still': the scene is driven, so it never comes to rest")
 
 
 def _refuse_sources(case, output):
