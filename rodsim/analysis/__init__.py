@@ -20,6 +20,7 @@ _HOMES = {
     "difference": ("position_errors", "triad_angle"),
     "energy": ("energy_table",),
     "helix": ("fit_helix", "pitch", "radius", "triad_turns", "turns"),
+    "measuring": ("measure",),
     "strain": ("bend", "strain_twist"),
     "swimming": ("efficiency", "speed", "swimming_velocity", "towing_drag", "velocity"),
     "topology": ("link", "linking_number", "twist", "writhe"),

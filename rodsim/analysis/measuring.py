@@ -133,6 +133,28 @@ def of_run(run, picked, period: float | None = None) -> dict[str, float]:
     return found
 
 
+def measure(run, name: str, rod: str = "") -> np.ndarray:
+    """Return one quantity at every frame: (T,) or, for a vector, (T, 3).
+
+    ``rod`` : the one it is of; left out, and not in the name either, there is one column for each
+    rod, (T, R) or (T, R, 3), NaN where a rod has none. Raises as :func:`pick` does.
+    """
+    of, measured = parse(name, {**MEASURES, **others(run)})
+    if rod and (measured.per != "rod" or of not in ("", rod)):
+        raise UsageError(f"{name} is not of the rod {rod}: run.measure({name!r}) has it")
+    picked = pick(run, [name], [rod] if rod else ())
+    parts = max(1, len(measured.components))
+    values = over_time(run, picked).values.reshape(run.frames, len(picked), parts)
+    if not (rod or of or measured.per == "scene"):
+        names = list(KINDS[measured.per].of_run(run))
+        found = np.full((run.frames, len(names), parts), np.nan)
+        found[:, [names.index(p.of) for p in picked]] = values
+        values = found
+    else:
+        values = values[:, 0]
+    return values if measured.components else values[..., 0]
+
+
 def _series(run, picked, time, values):
     series = picked.measure.series
     return series(time, values, picked.subject, run) if series else values

@@ -41,7 +41,8 @@ def simulate(
         :meth:`rodsim.run.ending.Motion.still`.
     notify : called with the text of each warning; by default they are Python's own.
     stop : called after each step; returns why the run is to stop there, or an empty text.
-    progress : object with ``update(fraction, note)``.
+    progress : object with ``update(fraction, note)``, or True for a bar on a terminal, a line in a
+        notebook.
     listener : one :class:`rodsim.run.listener.Listener` in place of these three.
 
     Raises
@@ -53,7 +54,7 @@ def simulate(
     """
     if not isinstance(case, Case):
         raise UsageError("simulate takes a case: rodsim.load_case(path)")
-    listener = listener or Functions(notify, stop, progress)
+    listener = listener or Functions(notify, stop, progress, case.title or str(output))
     started = perf_counter()
     _refuse_sources(case, output)
     scene = build_scene(case)
@@ -93,7 +94,7 @@ def resume(
     is as in :func:`simulate`. Raises CaseError for other changes, FileError for a file that cannot
     be gone on with. A finished run without changes is left as it is.
     """
-    listener = listener or Functions(notify, stop, progress)
+    listener = listener or Functions(notify, stop, progress, str(output))
     started = perf_counter()
     with open_past(output, overrides) as past:
         if past.complete:
