@@ -64,7 +64,7 @@ class Functions(Listener):
             self.warn = notify
         if stop is not None:
             self.stop = stop
-        if progress is not None and not self._shown:
+        if progress and not self._shown:
             self.update = progress.update
 
     def update(self, fraction, note):
