@@ -11,6 +11,17 @@ that the run has stored (power, gap, energies) take the run, or one rod of it.
 from __future__ import annotations
 
 from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # the same names, for type checkers and editors
+    from rodsim.analysis.curve import *  # noqa: F403
+    from rodsim.analysis.difference import *  # noqa: F403
+    from rodsim.analysis.energy import *  # noqa: F403
+    from rodsim.analysis.helix import *  # noqa: F403
+    from rodsim.analysis.measuring import *  # noqa: F403
+    from rodsim.analysis.strain import *  # noqa: F403
+    from rodsim.analysis.swimming import *  # noqa: F403
+    from rodsim.analysis.topology import *  # noqa: F403
 
 _HOMES = {
     "curve": (

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import os
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,8 +17,12 @@ from rodsim.nodes import Rod
 from rodsim.output import reader
 from rodsim.text import printable
 
+if TYPE_CHECKING:
+    import pandas
+    import xarray
 
-def open_trajectory(path) -> Trajectory:
+
+def open_trajectory(path: str | os.PathLike[str]) -> Trajectory:
     """Open an output file for reading; raises FileError, in one line, if it cannot be trusted.
 
     >>> with open_trajectory("out.h5") as run:
@@ -35,7 +41,7 @@ class Trajectory(reader.Trajectory):
     ``run["tail"]`` is one rod, a :class:`RodTrajectory`; iterating gives the names of all.
     """
 
-    def __init__(self, path):
+    def __init__(self, path: str | os.PathLike[str]):
         self._kept: dict[tuple[str, str], np.ndarray] = {}
         super().__init__(path)
 
@@ -61,14 +67,14 @@ class Trajectory(reader.Trajectory):
         """
         return measure(self, name)
 
-    def to_xarray(self, measures=()):
+    def to_xarray(self, measures: Iterable[str] = ()) -> xarray.Dataset:
         """Return all fields and observables as an ``xarray.Dataset`` with units and coordinates.
 
         ``measures`` : names of quantities that it is to have as well. Needs ``rodsim[table]``.
         """
         return to_xarray(self, measures)
 
-    def to_dataframe(self, measures=()):
+    def to_dataframe(self, measures: Iterable[str] = ()) -> pandas.DataFrame:
         """Return what is known of rods and scene over time as a ``pandas.DataFrame``.
 
         One row for each frame, the time as index; columns as ``left.power``. ``measures`` : names
@@ -86,7 +92,7 @@ class Trajectory(reader.Trajectory):
     def __iter__(self) -> Iterator[str]:
         return iter(self.rods.names)
 
-    def __contains__(self, name) -> bool:
+    def __contains__(self, name: object) -> bool:
         return name in self.rods.names
 
     def __repr__(self) -> str:

@@ -58,13 +58,12 @@ class Functions(Listener):
 
     def __init__(self, notify=None, stop=None, progress=None, label=""):
         self._shown = make_progress(label, quiet=False) if progress is True else None
-        progress = self._shown or progress
         self._begun = False
         if notify is not None:
             self.warn = notify
         if stop is not None:
             self.stop = stop
-        if progress and not self._shown:
+        if not (progress is None or isinstance(progress, bool)):
             self.update = progress.update
 
     def update(self, fraction, note):

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Iterable, Mapping
 from time import perf_counter
+from typing import Any, Literal
 
 from rodsim.case import Case
+from rodsim.case.plain import override_texts
 from rodsim.errors import FileError, UsageError
 from rodsim.output import TrajectoryWriter
 from rodsim.run.listener import Functions, Listener, Summary
@@ -16,16 +19,16 @@ STILL = "still"  # when a run is to end before its time
 
 
 def simulate(
-    case,
-    output,
+    case: Case,
+    output: str | os.PathLike[str],
     *,
-    overwrite=False,
-    threads=None,
-    force=False,
-    until=None,
-    notify=None,
-    stop=None,
-    progress=None,
+    overwrite: bool = False,
+    threads: int | None = None,
+    force: bool = False,
+    until: Literal["still"] | None = None,
+    notify: Callable[[str], object] | None = None,
+    stop: Callable[[], str] | None = None,
+    progress: Any = None,
     listener: Listener | None = None,
 ) -> Summary:
     """Run a case and stream it to an HDF5 file.
@@ -78,25 +81,26 @@ def simulate(
 
 
 def resume(
-    output,
+    output: str | os.PathLike[str],
     *,
-    overrides=(),
-    threads=None,
-    until=None,
-    notify=None,
-    stop=None,
-    progress=None,
+    overrides: Iterable[str] | Mapping[str, Any] = (),
+    threads: int | None = None,
+    until: Literal["still"] | None = None,
+    notify: Callable[[str], object] | None = None,
+    stop: Callable[[], str] | None = None,
+    progress: Any = None,
     listener: Listener | None = None,
 ) -> Summary:
     """Go on with a run where it stopped or was killed, in the same file, with the same bits.
 
-    ``overrides`` may set a later ``time.end`` and add to ``output.fields``, nothing else; the rest
-    is as in :func:`simulate`. Raises CaseError for other changes, FileError for a file that cannot
-    be gone on with. A finished run without changes is left as it is.
+    ``overrides``, a list or dict as in :func:`rodsim.load_case`, may set a later ``time.end`` and
+    add to ``output.fields``, nothing else; the rest is as in :func:`simulate`. Raises CaseError for
+    other changes, FileError for a file that cannot be gone on with. A finished run without changes
+    is left as it is.
     """
     listener = listener or Functions(notify, stop, progress, str(output))
     started = perf_counter()
-    with open_past(output, overrides) as past:
+    with open_past(output, override_texts(overrides)) as past:
         if past.complete:
             return Summary("finished", past.run.frames)
         for text in past.warnings():

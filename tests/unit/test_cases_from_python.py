@@ -137,6 +137,32 @@ def test_progress_in_a_notebook_is_one_line(notebook, monkeypatch):
     ]
 
 
+def test_a_display_begins_with_the_first_step_and_ends_with_the_run(monkeypatch):
+    seen = []
+
+    class Display:
+        def __enter__(self):
+            seen.append("begin")
+
+        def __exit__(self, *error):
+            seen.append("end")
+
+        def update(self, fraction, note):
+            seen.append(fraction)
+
+    monkeypatch.setattr("rodsim.run.listener.make_progress", lambda label, quiet: Display())
+    listener = Functions(progress=True)
+    listener.ended(None)  # a run that failed before its first step
+    for fraction in (0.3, 0.7):
+        listener.update(fraction, "")
+    listener.ended(None)
+    assert seen == ["begin", 0.3, 0.7, "end"]
+    silent = Functions(progress=Display())  # of the caller's: it begins and ends there
+    silent.update(0.5, "")
+    silent.ended(None)
+    assert seen[4:] == [0.5]
+
+
 def test_a_terminal_of_ipython_is_no_notebook(notebook, monkeypatch):
     monkeypatch.setattr(sys.modules["IPython"], "get_ipython", lambda: None)
     assert not isinstance(make_progress("a ring", quiet=False), Notebook)
