@@ -164,9 +164,9 @@ def _at(run, picked, frames, progress=None):
     """Return the values of each quantity at some frames, (F, ...) each."""
     if not run.frames:
         raise FileError(f"{run.path}: has no frames yet ({run.status})")
-    progress, rows = progress or Silent(), []
+    progress, rows, kept = progress or Silent(), [], {}
     for number in frames if picked else ():
-        frame = Frame(run, number)
+        frame = Frame(run, number, kept)
         places = (KINDS[p.measure.per].at(frame, p.subject) for p in picked)
         rows.append([p.measure.frame(place) for p, place in zip(picked, places, strict=True)])
         progress.update((number + 1) / run.frames, f"t = {frame.time:.4g}")

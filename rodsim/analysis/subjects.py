@@ -9,17 +9,21 @@ from functools import cached_property
 import numpy as np
 
 from rodsim.analysis.strain import strain_twist
+from rodsim.errors import UsageError
 from rodsim.nodes import Rod
+from rodsim.output.layout import PER_ROD
 
 
 class Frame:
     """A frame of a run, each array read when it is first asked for: what scenes are measured by.
 
-    Attributes: ``run``, ``number`` and ``time`` of the frame.
+    Attributes: ``run``, ``number`` and ``time`` of the frame. ``kept`` : observables over all
+    frames, by name, which the frames of a run share.
     """
 
-    def __init__(self, run, number: int):
+    def __init__(self, run, number: int, kept: dict | None = None):
         self.run, self.number, self.time = run, number, float(run.time[number])
+        self._kept = {} if kept is None else kept
 
     @cached_property
     def position(self) -> np.ndarray:
@@ -33,7 +37,9 @@ class Frame:
 
     def observable(self, name: str):
         """Return a stored observable: one number, or an array."""
-        return self.run.observable(name, self.number)
+        if name not in self._kept:
+            self._kept[name] = self.run.observable(name)
+        return self._kept[name][self.number]
 
 
 class RodFrame:
@@ -63,7 +69,9 @@ class RodFrame:
         return strain_twist(self.director, self.spacing, self.closed)
 
     def observable(self, name: str) -> float:
-        """Return its own value of an observable that every rod has."""
+        """Return its own value of what every rod has; raises UsageError for others."""
+        if name not in PER_ROD:
+            raise UsageError(f"{name} is not of one rod; these are: {', '.join(PER_ROD)}")
         return self._frame.observable(name)[self._frame.run.rods.index(self._rod)]
 
 

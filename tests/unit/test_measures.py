@@ -259,6 +259,9 @@ everything.per = "scene"
 def broken(rod):
     return rod.position[99]
 
+def wrong(rod):
+    return rod.observable("net_force")
+
 def odd(rod):
     return 1
 odd.per = "moon"
@@ -280,6 +283,7 @@ def test_quantities_of_ones_own(path, tmp_path, monkeypatch, run):
         "my.py:heigth": "my.py has no function 'heigth': did you mean 'height'",
         "my.py:odd": "its 'per' is 'moon': must be one of scene, rod",
         "my.py:broken": "my.py:broken: failed at t = 0 of rod 'zeta': IndexError",
+        "my.py:wrong": "UsageError: net_force is not of one rod; these are: bending_energy",
         "bad.py:f": "bad.py: cannot be loaded: ModuleNotFoundError",
     }.items():
         assert words in measure(path, text, code=2).stderr
