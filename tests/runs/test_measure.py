@@ -143,6 +143,14 @@ def test_a_sweep_over_rods_that_come_and_go(here, tmp_path):
     assert {"left.end_to_end", "right.end_to_end"} == {k for k in second if "." in k}
 
 
+def test_what_is_no_number_is_an_empty_cell(here, tmp_path):
+    (tmp_path / "my.py").write_text("def none(rod):\n    return float('nan')\n")
+    summary = summary_of([here / "anti.h5"], tmp_path, measures=("my.py:none", "amplitude"))
+    row = next(iter(summary.rows.values()))
+    assert "left.none" in summary.columns
+    assert {"left.amplitude", "right.amplitude"} == {key for key in row if "." in key}
+
+
 @pytest.mark.parametrize(
     ("name", "words"),
     [
