@@ -11,6 +11,7 @@ from rodsim.commands.groups import (
     describe_rods,
     in_water_units,
 )
+from rodsim.commands.stored_case import describe_stored
 from rodsim.errors import FileError
 from rodsim.run.ending import Motion, gap_sentence
 from rodsim.run.recorder import frame_times
@@ -18,8 +19,6 @@ from rodsim.scene.at_wall import mirror_gap
 from rodsim.scene.build import build_scene
 from rodsim.scene.restore import restore_case, stored_diameter
 from rodsim.units import unit_text
-
-MOST_RODS = 50  # described one by one
 
 
 def describe_case(case, refuse=False, threads=None) -> str:
@@ -148,7 +147,8 @@ def _endings(run):
         return []
     motion = Motion(is_driven(case))
     motion.read(run, run.frames)
-    sentences = [motion.sentence(run.units)]
+    at_rest = run.status == "finished" and run.frames < len(run.planned)
+    sentences = [motion.sentence(run.units, at_rest)]
     if "gap" in run.observables:
         gaps = run.observable("gap")
         k, diameter = int(gaps.argmin()), stored_diameter(run, case)
@@ -183,11 +183,7 @@ def describe_output(path) -> str:
             f"{run.frames} of {len(run.planned)} frames, {last}",
             f"written by rodsim {run.version}, {run.created}; format {run.format}",
         ]
-        for rod in run.rods[:MOST_RODS]:
-            kind = "closed" if rod.closed else "open"
-            lines.append(f"rod {rod.name}: {rod.count} points, {kind}, spacing {rod.spacing:g}")
-        if len(run.rods) > MOST_RODS:
-            lines.append(f"and {len(run.rods) - MOST_RODS} more rods")
+        lines += describe_stored(run)
         lines += _endings(run)
         if run.wall is not None:
             lines.append(f"wall: z = {run.wall:g} {unit['length']}, without slip")
