@@ -11,6 +11,8 @@ from rodsim.commands.groups import (
     describe_rods,
     in_water_units,
 )
+from rodsim.commands.stored_case import describe_stored
+from rodsim.commands.touching import describe_contact, describe_links
 from rodsim.errors import FileError
 from rodsim.run.ending import Motion, gap_sentence
 from rodsim.run.recorder import frame_times
@@ -18,9 +20,6 @@ from rodsim.scene.at_wall import mirror_gap
 from rodsim.scene.build import build_scene
 from rodsim.scene.restore import restore_case, stored_diameter
 from rodsim.units import unit_text
-
-MOST_RODS = 50  # described one by one
-MOST_POINTS = 600  # of a rod whose linking number is told: it takes all pairs
 
 
 def describe_case(case, refuse=False, threads=None) -> str:
@@ -83,22 +82,6 @@ def describe_wall(scene, length_unit: str) -> str:
     return (
         f"wall: z = {scene.wall:g} {length_unit}, without slip; lowest: point {k} of rod {rod}, "
         f"{height:.4g} {length_unit} = {height / scene.epsilon:.4g} epsilon above it"
-    )
-
-
-def describe_contact(scene, contact, length_unit: str) -> str:
-    """Return the line on contact: how thick rods are to each other, and how well that is resolved.
-
-    Points in a diameter, of the coarsest rod, tell how much strands feel each other's points.
-    """
-    apart, spacing = scene.parts.apart, scene.rods.spacing.max()
-    reach = ", ".join(map(str, sorted(set(apart.excluded.tolist()))))
-    who = "all rods and themselves" if apart.itself else "different rods"
-    epsilons, spacings = apart.diameter / scene.epsilon, apart.diameter / spacing
-    return (
-        f"contact: {who}, diameter {apart.diameter:.6g} {length_unit} "
-        f"= {epsilons:.4g} epsilon = {spacings:.3g} spacings, "
-        f"strength {contact.strength:g}; points within {reach} segments of a rod ignore each other"
     )
 
 
@@ -167,35 +150,13 @@ def _endings(run):
         return []
     motion = Motion(is_driven(case))
     motion.read(run, run.frames)
-    sentences = [motion.sentence(run.units)]
+    at_rest = run.status == "finished" and run.frames < len(run.planned)
+    sentences = [motion.sentence(run.units, at_rest)]
     if "gap" in run.observables:
         gaps = run.observable("gap")
         k, diameter = int(gaps.argmin()), stored_diameter(run, case)
         sentences.insert(0, gap_sentence(gaps[k], run.time[k], diameter, run.units))
     return [text for text in sentences if text]
-
-
-def _links(run) -> list[str]:
-    """Return how often each closed rod winds around itself, first and last: it can never change.
-
-    Where it has, the rod has passed through itself.
-    """
-    if run.frames == 0 or "director" not in run.fields:
-        return []
-    from rodsim.analysis.topology import twist, writhe
-
-    lines = []
-    for rod in run.rods:
-        if not rod.closed or rod.count > MOST_POINTS:
-            continue
-        shapes = (
-            (run.read("position", k)[rod.nodes], run.read("director", k)[rod.nodes])
-            for k in (0, -1)
-        )
-        first, last = (round(twist(X, D) + writhe(X)) for X, D in shapes)
-        passed = "" if first == last else ": it has passed through itself"
-        lines.append(f"rod {rod.name}: linking number {first} at first, {last} at last{passed}")
-    return lines
 
 
 def _inputs(run) -> list[str]:
@@ -225,12 +186,8 @@ def describe_output(path) -> str:
             f"{run.frames} of {len(run.planned)} frames, {last}",
             f"written by rodsim {run.version}, {run.created}; format {run.format}",
         ]
-        for rod in run.rods[:MOST_RODS]:
-            kind = "closed" if rod.closed else "open"
-            lines.append(f"rod {rod.name}: {rod.count} points, {kind}, spacing {rod.spacing:g}")
-        if len(run.rods) > MOST_RODS:
-            lines.append(f"and {len(run.rods) - MOST_RODS} more rods")
-        lines += _links(run)
+        lines += describe_stored(run)
+        lines += describe_links(run)
         lines += _endings(run)
         if run.wall is not None:
             lines.append(f"wall: z = {run.wall:g} {unit['length']}, without slip")

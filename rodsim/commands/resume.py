@@ -11,6 +11,7 @@ from rodsim.commands.common import (
     say,
     set_option,
     threads_option,
+    until_option,
 )
 
 
@@ -19,8 +20,9 @@ from rodsim.commands.common import (
 @set_option
 @threads_option
 @max_wall_option
+@until_option
 @click.option("-q", "--quiet", is_flag=True, help="No progress and no summary.")
-def resume(output, overrides, threads, max_wall, quiet):
+def resume(output, overrides, threads, max_wall, until, quiet):
     """Go on where a run stopped or was killed, in the same file and with the same bits.
 
     --set can only give a later time.end, or more output.fields.
@@ -36,4 +38,4 @@ def resume(output, overrides, threads, max_wall, quiet):
             quiet or say(f"{output}: is finished; a later end: --set time.end=...")
             return
         with Console(output, quiet, max_wall).about(past.case, output.name) as console:
-            go_on(past, started, threads, console)
+            go_on(past, started, threads, console, until)

@@ -6,11 +6,13 @@ import numpy as np
 
 from rodsim.analysis.energy import energy_table
 from rodsim.analysis.frames import nearest_frame, spread_frames
+from rodsim.analysis.measuring import over_time, pick
 from rodsim.analysis.strain import bend, is_flat, strain_twist
 from rodsim.errors import FileError, UsageError
 from rodsim.output import open_trajectory
 from rodsim.plotting import style
 from rodsim.plotting.camera import make_camera
+from rodsim.plotting.curves import plot_curves, run_names
 from rodsim.plotting.energy import plot_energies
 from rodsim.plotting.movie import write_movie
 from rodsim.plotting.over_time import draw_kymograph, draw_speeds, limits_of
@@ -20,6 +22,7 @@ from rodsim.plotting.shapes import Shapes, draw_overlay, draw_panels
 THICKNESS = 0.03  # of the length of the longest rod
 ARROW = 0.06  # likewise, of D^1 and D^2
 PANELS = 6
+OF_SEVERAL = {"energy": "elastic_energy"}  # of several runs, one curve each
 
 
 def read_title(run) -> str:
@@ -71,6 +74,22 @@ def plot_speed(path, out):
     unit = f"{units['length']} {units['time']}^-1"
     draw_speeds(figure.add_subplot(), time, velocity, unit, units["time"])
     style.save(figure, out)
+
+
+def plot_measures(paths, out, names):
+    """Draw quantities of one run or several over time, see :mod:`rodsim.analysis.measures`."""
+    if alone := {"shapes", "curvature"} & {*names}:
+        raise UsageError(f"-w {alone.pop()}: is a picture of one run, alone")
+    tables, units = {}, {}
+    for path, name in zip(paths, run_names(paths), strict=True):
+        if name in tables:
+            raise UsageError(f"{path}: is given twice")
+        with open_trajectory(path) as run:
+            tables[name] = over_time(run, pick(run, [OF_SEVERAL.get(n, n) for n in names]))
+        units |= {c.quantity: c.unit for c in tables[name].columns}
+        if any(units[c.quantity] != c.unit for t in tables.values() for c in t.columns):
+            raise UsageError(f"{path}: is in other units than {paths[0]}")
+    plot_curves(tables, out)
 
 
 def plot_kymograph(path, out, quantity):

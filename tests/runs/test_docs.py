@@ -16,6 +16,7 @@ SLOW = (
     "sweeps",
     "visualization",
     "data",
+    "measure",
     "wall",
 )  # minutes where the machine is not quiet; and below, the tutorial
 BLOCK = re.compile(r"(?:<!-- (?P<mark>[\w: ]+) -->\n)?```(?P<kind>\w+)\n(?P<text>.*?)```", re.S)

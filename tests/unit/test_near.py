@@ -73,6 +73,17 @@ def test_cells_find_the_blocks_that_all_pairs_find(kind, far):
         assert sorted(map(tuple, in_cells)) == sorted(map(tuple, every))
 
 
+def test_cells_look_into_all_directions():
+    """A cloud of short rods: every one of the 27 cells holds one that is near."""
+    rng = np.random.default_rng(11)
+    middle = rng.uniform(-2.0, 2.0, size=(3, 500))
+    X = np.repeat(middle, 2, axis=1) + rng.normal(scale=0.05, size=(3, 1000))
+    rods = lay_out((f"r{i}", 2, False, 0.1, [0.7] * 6) for i in range(500))
+    every, in_cells = block_pairs(X, rods.first, rods.count, 0.6)
+    assert sorted(map(tuple, in_cells)) == sorted(map(tuple, every))
+    assert len(every) > 4000
+
+
 def test_many_blocks_are_looked_for_in_cells():
     """A sheet of so many rods that cells take over: each point has its neighbours on both sides."""
     side, long = 40, 130
