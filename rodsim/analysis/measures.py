@@ -153,7 +153,6 @@ ALL = (
               layout.ENERGY) for name in ENERGIES),
     _stored("kinetic_energy", "1/2 rho pi eps^2 sum |u|^2 ds; of cases with a density", "rod",
             layout.ENERGY, number=mean, whole="mean over time"),
-    _stored("contact_energy", "of contact, half of a pair to either rod", "rod", layout.ENERGY),
     _stored("gap", "smallest distance of points that are no neighbours", "scene", LENGTH,
             number=lambda time, values, *_: values.min(), whole="smallest"),
     *(_stored(name, f"{name.partition('_')[2]} of all rods on the fluid", "scene", unit,
