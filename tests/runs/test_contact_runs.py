@@ -214,6 +214,14 @@ def test_a_fibre_lies_on_the_wall_where_weight_and_contact_are_equal(tmp_path):
     assert gap == pytest.approx(min(2 * z.min(), 6 * 0.11), rel=1e-6)
 
 
+def test_the_gap_is_that_of_points_that_are_no_neighbours_to_contact(tmp_path):
+    """On a straight rod alone: the first points beyond the exclusion, 7 segments of 0.11."""
+    case = make(tmp_path, CROSSING, ["rods.upper=null", "contact.exclusion=0.69", "time.end=1e-5"])
+    simulate(case, tmp_path / "out.h5")
+    with open_trajectory(tmp_path / "out.h5") as run:
+        assert run.observable("gap")[0] == pytest.approx(7 * 0.11, rel=1e-12)
+
+
 def test_info_tells_of_contact_and_of_linking_numbers(pressed, tmp_path):
     said = call("info", write(tmp_path)).stdout
     assert (
