@@ -59,7 +59,7 @@ def changed(base, changes):
         if value is None:
             node.pop(last, None)
         else:
-            node[last] = value
+            node[last] = copy.deepcopy(value)
     return case
 
 
