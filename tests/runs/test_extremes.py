@@ -38,6 +38,9 @@ FINISHED = [
     ("at a wall", "0.66 epsilon above"),
     ("at a wall", "0.1 epsilon above"),
     ("at a wall", "falling on it, 1000 of its own bending forces"),
+    ("held", "clamped at both ends"),
+    ("held", "hook, 100 times a segment"),
+    pytest.param("held", "two bodies 0.05 radii apart", marks=pytest.mark.long),
     ("long", "rod, 100 times the time"),
 ]
 
