@@ -257,6 +257,7 @@ SCENES = {
                                     rods__rod__end={"hold": "clamped"}),
         "on a motor of a body": swimming(),
         "a light body, moduli x 1e2": swimming(0.2, base=stiffer(100.0)),
+        "motor, 2.5e3 rad/s": swimming(start={"motor": {"rate": 2.5e3}}),
         "motor, 6.28e4 rad/s": swimming(start={"motor": {"rate": 6.28e4}}),
         **{f"hook, {n} times a segment": hooked(n) for n in (1, 100, 10_000)},
         "two bodies 0.05 radii apart": close_bodies(0.05),
