@@ -167,6 +167,7 @@ def main(quick, repeats):
         helices(HELICES[:1] if quick else HELICES),
         thresholds(),
         driven,
+        Table("Hook", COLUMNS, [row(*found) for found in rods.hook()]),
         swimmers(dict(list(SWIMMERS.items())[: 1 if quick else 3])),
     ]
     return tables, lambda *axes: draw(curves, *axes)

@@ -158,3 +158,34 @@ def elastica(drive, sp, periods, amplitude=0.1, points=41):
             at += 1
     change = np.diff(np.array(seen, dtype=float), axis=0) / period
     return change / np.array([omega * a * a, omega**2 * a * a * length, omega**2 * a * a * length])
+
+
+def hook(bending=0.3, twisting=0.2):
+    """Return (what, ours, exact) of a rod that hangs on a hook, at rest under a load on its tip.
+
+    y = F L^2/k + F L^3/(3 A) + F L/b under a force F; T/k_t + T L/C under a torque T.
+    """
+    from rodsim.case import case_from_mapping
+    from rodsim.integrators.make import make_integrator
+
+    L, A, C, b, F, T = 2.0, 0.5, 0.4, 300.0, 1e-3, 0.02
+    ends = {}
+    for name, load in (("force", [0, F, 0]), ("torque", [0, 0, T])):
+        data = changed(ROD, {
+            "fluid.epsilon": 0.2, "rods.rod.shape.points": 21, "rods.rod.shape.length": L,
+            "rods.rod.moduli": {"bending": A, "twisting": C, "shear": b, "stretch": b},
+            "rods.rod.start.hook": {"bending": bending, "twisting": twisting},
+            "rods.rod.loads": {"tip": {"at": "end", name: load}},
+            "time": {"end": 2000.0, "tolerance": 1e-7},
+        })  # fmt: skip
+        system = system_of(data)
+        integrator = make_integrator(case_from_mapping(data).time, system)
+        for step in integrator.steps(system.scene.initial, 2000.0):
+            ends[name] = step.end
+    turn = ends["torque"].director[0, :, -1]
+    return (
+        ("tip, under a force", ends["force"].position[1, -1],
+         F * L**2 / bending + F * L**3 / (3 * A) + F * L / b),
+        ("turn of the last triad, under a torque", np.arctan2(turn[1], turn[0]),
+         T / twisting + T * L / C),
+    )  # fmt: skip
