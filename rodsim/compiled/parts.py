@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -11,6 +12,31 @@ from rodsim.compiled.kernels import Kernel
 from rodsim.compiled.row import Row
 
 FORCE, FLOW, TRACERS = "force", "flow", "tracers"
+
+
+@dataclass(frozen=True)
+class Statics:
+    """What a force tells those who look for states at rest, beside its loads and its energy.
+
+    A force that acts on each node by that node's own position and triad, or on neighbours along a
+    rod, need not say anything: its derivatives are taken by differences.
+
+    exact : the kernel, or where it is, of the exact gradient of its energy, where its own is not.
+    stiffness : of a force that couples other nodes: called with (state, row, scene), returns
+    (i, j, blocks) with -d(load of node i)/d(z of node j) to be added up; i, j (n,), blocks
+    (n, 3, 3) of positions alone, or (n, 6, 6) of positions and rotation vectors.
+    holds : degrees of freedom that it keeps where they are, c N + k for component c (x, y, z, then
+    three of the rotation vector) of node k.
+    move : the farthest that a point may move in one step, length.
+    """
+
+    exact: Kernel | str | None = None
+    stiffness: Callable | None = None
+    holds: tuple[int, ...] = ()
+    move: float = math.inf
+
+
+LOCAL = Statics()
 
 
 @dataclass(frozen=True)
@@ -27,6 +53,7 @@ class Part:
     series : those beyond the ones of every scene, (name, shape, dimension) each.
     pressure : called with (points (3, T), sources (3, N), loads (6, N), t), returns its share of
     the pressure (T,).
+    statics : what it tells those who look for states at rest.
     """
 
     name: str
@@ -40,6 +67,7 @@ class Part:
     observe: Callable | None = None
     series: tuple = ()
     pressure: Callable | None = None
+    statics: Statics = LOCAL
 
     @property
     def where(self) -> str:

@@ -1,0 +1,75 @@
+"""What ``rest`` and ``stability`` start from: a case, a case with shapes of an output, an output."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from rodsim.case import Case, case_from_mapping, load_case
+from rodsim.compiled.parts import FLOW, FORCE
+from rodsim.errors import UsageError
+from rodsim.output import CaseText, open_trajectory
+from rodsim.scene.build import build_scene
+from rodsim.scene.restore import scene_at
+from rodsim.scene.state import Scene
+
+
+@dataclass(frozen=True)
+class Start:
+    """A case and its scene; ``text``: what the output says of the case, None as of any run."""
+
+    case: Case
+    scene: Scene
+    text: CaseText | None = None
+
+
+def start_from_output(path, overrides, frame: int) -> Start:
+    """Return the case of a stored run, its points and triads those of a frame."""
+    with open_trajectory(path) as run:
+        case = case_from_mapping(run.case_data(), overrides, path=f"{path}: case")
+        scene = scene_at(run, case, frame)
+        resolved = json.dumps(case.resolved(), indent=1)
+        changes = [*run.overrides, *overrides]
+        return Start(case, scene, CaseText(run.case_source, resolved, changes, run.inputs))
+
+
+def start_from_case(path, overrides, source=None, frame: int = -1) -> Start:
+    """Return a case as its file says, or with the shapes of its rods taken from an output."""
+    case = load_case(path, overrides)
+    if source is not None:
+        case = load_case(path, [*overrides, *shapes_of(case, source, frame)])
+    return Start(case, build_scene(case))
+
+
+def shapes_of(case: Case, source, frame: int) -> list[str]:
+    """Return the overrides that put the shapes in an output in place of those of a case.
+
+    Spacing and closure stay the case's, and must agree. Raises UsageError for rods that are free of
+    stress as they are built: they would be so in any other shape.
+    """
+    found = []
+    for name, rod in case.rods.items():
+        if rod.strain_twist == "natural":
+            reason = "is natural, which another start would change: give numbers, or start from "
+            raise UsageError(f"--from: rods.{name}.strain_twist {reason}the output itself")
+        path = str(Path(source).absolute())
+        shape = {"kind": "file", "path": path, "frame": frame, "rod": name}
+        if rod.shape.ds is not None:
+            shape |= {"spacing": rod.shape.ds, "closed": rod.shape.is_closed}
+        found.append(f"rods.{name}.shape={json.dumps(shape)}")
+        if rod.perturb is not None:
+            found.append(f"rods.{name}.perturb=null")
+    return found
+
+
+def at_time(start: Start, time: float | None) -> Start:
+    """Return a start whose forces are those at one time; UsageError where that is not said."""
+    scene = start.scene
+    if any(part.external for part in scene.parts.of(FLOW)):
+        raise UsageError("a background flow moves the rods, so they are not at rest without loads")
+    driven = [part.drive for part in scene.parts.of(FORCE) if part.row.driven]
+    if driven and time is None:
+        raise UsageError(f"{driven[0]} depends on time: say with --at when it is looked at")
+    moment = 0.0 if time is None else time
+    return replace(start, scene=replace(scene, initial=replace(scene.initial, time=moment)))
