@@ -4,12 +4,19 @@ from pathlib import Path
 
 import click
 
-from rodsim.commands.common import is_output, prepare_numba, say, say_warnings, set_option, warn
+from rodsim.commands.common import (
+    from_option,
+    is_output,
+    load_from,
+    prepare_numba,
+    say,
+    say_warnings,
+    set_option,
+    warn,
+)
 
 _FILE = click.Path(path_type=Path, dir_okay=False)
 source_argument = click.argument("source", metavar="CASE.yaml|OUT.h5", type=_FILE)
-from_option = click.option("--from", "origin", type=_FILE, metavar="OUT.h5",
-                           help="Start a case from the shapes of its rods in an output.")  # fmt: skip
 frame_option = click.option("--frame", type=int, default=-1, show_default=True,
                             help="Which frame of the output.")  # fmt: skip
 at_option = click.option("--at", "time", type=float, metavar="T",
@@ -36,7 +43,7 @@ def rest(source, output, overrides, origin, frame, time, saddle, overwrite, quie
     ever longer steps, and leaves states that are not stable. Writes two frames, the start and the
     rest. Exit code 3 where it does not come to rest.
     """
-    start = begin(source, overrides, origin, frame, time)
+    start = begin(source, overrides, origin, frame, time, quiet)
     from rodsim.errors import DivergedError
     from rodsim.rest.find import find
     from rodsim.rest.report import describe
@@ -51,7 +58,7 @@ def rest(source, output, overrides, origin, frame, time, saddle, overwrite, quie
         raise DivergedError(f"{output}: {report.rest.failure}")
 
 
-def begin(source, overrides, origin, frame, time):
+def begin(source, overrides, origin, frame, time, quiet):
     """Return what a command starts from; says what looks wrong in it, and compiles."""
     from rodsim.errors import UsageError
 
@@ -64,10 +71,23 @@ def begin(source, overrides, origin, frame, time):
             raise UsageError("--from gives a case its shapes; an output has them already")
         start = start_from_output(source, overrides, frame)
     else:
-        start = start_from_case(source, overrides, origin, frame)
+        start = start_from_case(load_from(source, overrides, origin, frame))
     start = at_time(start, time)
     say_warnings(start.case, start.scene)
+    _compile(start.scene, quiet)
     return start
+
+
+def _compile(scene, quiet):
+    """Compile what the scene needs in a process of its own, and say so."""
+    from dataclasses import replace
+
+    from rodsim.compiled.parts import PartList
+    from rodsim.rest.forces import exact_parts
+    from rodsim.run.warmup import ensure_compiled
+
+    parts = PartList([*scene.parts, *exact_parts(scene)])
+    ensure_compiled(replace(scene, parts=parts), lambda line: quiet or say(line))
 
 
 def require_scipy():

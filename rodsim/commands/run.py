@@ -6,7 +6,8 @@ import click
 
 from rodsim.commands.common import (
     case_argument,
-    load,
+    from_option,
+    load_from,
     max_wall_option,
     prepare_numba,
     say,
@@ -28,15 +29,16 @@ from rodsim.files import DEFAULT_OUTPUT
     help="Output file; one that exists is renamed to out.1.h5, ...",
 )
 @set_option
+@from_option
 @threads_option
 @max_wall_option
 @click.option("--overwrite", is_flag=True, help="Replace an existing output file.")
 @click.option("--force", is_flag=True, help="Run also with a fixed step above its limit.")
 @click.option("--dry-run", is_flag=True, help="Check the case and say what it would do, no more.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress and no summary.")
-def run(case_path, output, overrides, threads, max_wall, overwrite, force, dry_run, quiet):
+def run(case_path, output, overrides, origin, threads, max_wall, overwrite, force, dry_run, quiet):
     """Run a case and write its trajectory, energies and balances to an HDF5 file."""
-    case = load(case_path, overrides)
+    case = load_from(case_path, overrides, origin)
     say_warnings(case)
     prepare_numba()
     if dry_run:

@@ -75,7 +75,7 @@ def _links(report):
     for r, name in enumerate(report.start.scene.rods.names):
         if np.isfinite(lk[r]):
             yield (
-                f"rod {name}: linking number {lk[r]:.4g} -> {lk_after[r]:.4g}, "
+                f"rod {name}: linking number {round(lk[r])} -> {round(lk_after[r])}, "
                 f"writhe {wr[r]:.4g} -> {wr_after[r]:.4g}"
             )
             if abs(lk_after[r] - lk[r]) > 0.5:

@@ -69,6 +69,9 @@ def find_rest(scene, settings=None, saddle: bool = False, tell=lambda residual, 
     scales, exact = scales_of(scene, settings), Forces(scene)
     most = settings.steps if settings else STEPS
     now, left = Descent(scene.initial, np.inf, scales.first), 0
+    if reason := _never(exact, scene.initial, scales):
+        residual = scales.residual(exact.loads(scene.initial))
+        return Rest(scene.initial, residual, scales.tolerance, 0, 0, failure=reason)
     while True:
         now = descend(exact, now, scales, most, SAME, tell)
         if now.failure or not exact.conservative_at(now.state):
@@ -84,6 +87,22 @@ def find_rest(scene, settings=None, saddle: bool = False, tell=lambda residual, 
     failure = now.failure and f"{now.failure}; residual {now.residual:.3g}"
     steps = now.steps, now.rejected
     return Rest(now.state, now.residual, scales.tolerance, *steps, *counts, left, failure)
+
+
+def _never(forces, state, scales):
+    """Return why nothing can come to rest, or nothing: forces on what is free to move on."""
+    n = forces.scene.rods.points
+    stiffness, every = forces.stiffness(state), np.zeros((6 * n, 3))
+    for axis in range(3):
+        every[axis * n : (axis + 1) * n, axis] = 1.0
+    every = every[forces.free]
+    total = every.T @ forces.loads(state).ravel()[forces.free]
+    held = abs(stiffness @ every).max(axis=0) > 1e-9 * abs(stiffness).max()
+    pushed = abs(total) > n * scales.tolerance * scales.force
+    if not (pushed & ~held).any():
+        return ""
+    shown = ", ".join(f"{force:.3g}" for force in total)
+    return f"nothing holds the scene against its net force ({shown}): it would move on for ever"
 
 
 def _pushed(forces, now, modes, scales):

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, replace
-from pathlib import Path
 
-from rodsim.case import Case, case_from_mapping, load_case
+from rodsim.case import Case, case_from_mapping
 from rodsim.compiled.parts import FLOW, FORCE
 from rodsim.errors import UsageError
 from rodsim.output import CaseText, open_trajectory
@@ -34,33 +33,9 @@ def start_from_output(path, overrides, frame: int) -> Start:
         return Start(case, scene, CaseText(run.case_source, resolved, changes, run.inputs))
 
 
-def start_from_case(path, overrides, source=None, frame: int = -1) -> Start:
-    """Return a case as its file says, or with the shapes of its rods taken from an output."""
-    case = load_case(path, overrides)
-    if source is not None:
-        case = load_case(path, [*overrides, *shapes_of(case, source, frame)])
+def start_from_case(case: Case) -> Start:
+    """Return a case and the scene that its file describes."""
     return Start(case, build_scene(case))
-
-
-def shapes_of(case: Case, source, frame: int) -> list[str]:
-    """Return the overrides that put the shapes in an output in place of those of a case.
-
-    Spacing and closure stay the case's, and must agree. Raises UsageError for rods that are free of
-    stress as they are built: they would be so in any other shape.
-    """
-    found = []
-    for name, rod in case.rods.items():
-        if rod.strain_twist == "natural":
-            reason = "is natural, which another start would change: give numbers, or start from "
-            raise UsageError(f"--from: rods.{name}.strain_twist {reason}the output itself")
-        path = str(Path(source).absolute())
-        shape = {"kind": "file", "path": path, "frame": frame, "rod": name}
-        if rod.shape.ds is not None:
-            shape |= {"spacing": rod.shape.ds, "closed": rod.shape.is_closed}
-        found.append(f"rods.{name}.shape={json.dumps(shape)}")
-        if rod.perturb is not None:
-            found.append(f"rods.{name}.perturb=null")
-    return found
 
 
 def at_time(start: Start, time: float | None) -> Start:
