@@ -18,6 +18,7 @@ from rodsim.case import Expression, ExpressionError
 from rodsim.errors import FileError, SweepError, UsageError
 from rodsim.files import replacing
 from rodsim.output import open_trajectory
+from rodsim.sweep.at_rest import RESTS, SHOWN_AT_REST, total_energy
 from rodsim.sweep.plan import Plan, Run
 from rodsim.sweep.standing import standing
 from rodsim.sweep.work import last_line
@@ -56,6 +57,8 @@ class Summary:
 
     def __post_init__(self):
         self._next = 0.0
+        self.at_rest = all(run.verb == "rest" for run in self.plan.runs)
+        self.results = RESTS if self.at_rest else RESULTS
         self._reference = _last_frame(self.reference) if self.reference else None
         for run in self.plan.runs:
             _period(self.period, run)  # a wrong expression shows before the runs, not after
@@ -64,13 +67,13 @@ class Summary:
     @property
     def columns(self) -> list[str]:
         """Names of the columns."""
-        return ["run", *self.plan.key_units, *RESULTS]
+        return ["run", *self.plan.key_units, *self.results]
 
     def head(self, column: str) -> str:
         """Return the head of a column, with its unit."""
         unit = self.plan.key_units.get(column, "")
-        if column in RESULTS:
-            unit = unit_text(RESULTS[column], self.plan.runs[0].data["units"])
+        if column in self.results:
+            unit = unit_text(self.results[column], self.plan.runs[0].data["units"])
         return f"{column} ({unit})" if unit not in ("", "1") else column
 
     def column(self, name: str) -> str:
@@ -87,7 +90,8 @@ class Summary:
         if status not in ("waiting", "running"):  # of what goes on the numbers are half-way
             row |= self._results(run)
         if failure or status == "diverged":
-            row["message"] = failure or last_line(run.log, "diverged in step")
+            begins = "" if self.at_rest else "diverged in step"
+            row["message"] = failure or last_line(run.log, begins)
         self.rows[run.name] = row
         return row
 
@@ -98,14 +102,17 @@ class Summary:
             energies = {
                 name: float(output.observable(name, -1).sum())
                 for name in output.observables
-                if name in RESULTS
+                if name in self.results
             }
             energies["elastic_energy"] = sum(energies[f"{part}_energy"] for part in PARTS)
+            if self.at_rest:
+                energies["total_energy"] = total_energy(output)
             velocity = _velocity(output, _period(self.period, run))
-            cost = {k: v for k, v in output.runtime.items() if k in RESULTS}
+            cost = {k: v for k, v in output.runtime.items() if k in self.results}
             error = self._error(output)
             time = float(output.time[-1])
-        return {"time": time, **velocity, **energies, **error, **cost}
+        found = {"time": time, **velocity, **energies, **error, **cost}
+        return {name: value for name, value in found.items() if name in self.results}
 
     def _error(self, output):
         if self._reference is None:
@@ -164,7 +171,8 @@ class Summary:
     def text(self) -> str:
         """Return the most important columns as aligned text."""
         present = set().union(*self.rows.values())
-        columns = [c for c in (*self.plan.key_units, *SHOWN) if c in present]
+        shown = SHOWN_AT_REST if self.at_rest else SHOWN
+        columns = [c for c in (*self.plan.key_units, *shown) if c in present]
         cells = [[self.head(c) for c in columns]]
         cells += [[_short(row.get(c, "")) for c in columns] for row in self.rows.values()]
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
