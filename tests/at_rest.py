@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 from rodsim.case import case_from_mapping
 from rodsim.compiled.parts import PartList
 from rodsim.rest.descent import GREATEST, SAME, Descent, descend
-from rodsim.rest.forces import Forces, moved
+from rodsim.rest.forces import Forces
 from rodsim.rest.modes import modes_of
 from rodsim.rest.solve import scales_of
 from rodsim.scene.build import build_scene
@@ -83,4 +83,3 @@ def threshold(make, low, high, count=12):
 def extrapolated(coarse, fine):
     """Return the limit of an error that falls as the square of the spacing, from two M, 2 M."""
     return (4.0 * fine - coarse) / 3.0
-

@@ -1,5 +1,7 @@
 """A quantity of states at rest over a parameter, in the order in which they were found."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from rodsim.plotting import style
@@ -44,7 +46,7 @@ def _ways(x):
     turns = 1 + np.flatnonzero(side[1:] * side[:-1] < 0)
     ends = [0, *turns, len(x) - 1]
     found = []
-    for begin, end in zip(ends[:-1], ends[1:], strict=True):
+    for begin, end in pairwise(ends):
         name = "rising" if x[end] >= x[begin] else "falling"
         found.append((slice(begin, end + 1), name))
     return found

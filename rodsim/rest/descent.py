@@ -87,7 +87,9 @@ def descend(forces: Forces, start: Descent, scales: Scales, most: int, slack: fl
 def _try(forces, state, loads, most, system, tau, scales):
     """Return (state, energy, loads) after a step, or None, and the tau to go on with."""
     change = np.zeros(loads.size)
-    change[forces.free] = _solved(system, scales.drag[forces.free] / tau, loads.ravel()[forces.free])
+    change[forces.free] = _solved(
+        system, scales.drag[forces.free] / tau, loads.ravel()[forces.free]
+    )
     change = change.reshape(loads.shape)
     used = _used(change, scales)
     if not used <= 1.0:

@@ -50,13 +50,14 @@ def find(start: Start, output, saddle=False, overwrite=False, steps=None, warn=N
         tuple(topology(scene, state) for state in states),
         seconds,
     )
-    moved = write_states(output, start, states, _times(start), _series(report),
-                         "diverged" if rest.failure else "finished", _cost(report), overwrite, warn)  # fmt: skip
+    status, cost = "diverged" if rest.failure else "finished", _cost(report)
+    how = _times(start), _series(report), status, cost, overwrite, warn
+    moved = write_states(output, start, states, *how)
     return replace(report, moved=str(moved) if moved else None)
 
 
 def _times(start):
-    """Return the times of both frames: 0 and the end of the case, or just after a time asked for."""
+    """Return the times of both frames: 0 and the end of the case, or from a time just on."""
     time, end = start.scene.initial.time, start.case.time.end
     return (time, np.nextafter(time, np.inf) + 1e-9 * end) if time else (0.0, end)
 
@@ -64,7 +65,9 @@ def _times(start):
 def _series(report):
     """Return what is stored of both states beyond the observables of a run."""
     scales = scales_of(report.start.scene, report.start.case.rest)
-    before = scales.residual(Forces(report.start.scene, exact=False).loads(report.start.scene.initial))
+    before = scales.residual(
+        Forces(report.start.scene, exact=False).loads(report.start.scene.initial)
+    )
     rest = report.rest
     found = {"residual": (NUMBER, (before, rest.residual))}
     for name, count in (("growing_modes", rest.growing), ("neutral_modes", rest.neutral)):

@@ -12,7 +12,6 @@ from rodsim.rest.stiffness import Differences, assembled
 from rodsim.scene.evaluation import Evaluation
 from rodsim.scene.state import Scene, State
 
-
 UNEVEN = 1e-7  # of the largest stiffness
 
 

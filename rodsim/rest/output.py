@@ -46,7 +46,7 @@ def write_states(path, start, states, times, series, status, cost, overwrite=Fal
 
 
 def topology(scene, state):
-    """Return writhe and linking number (R,) of the rods, as far as they are closed and not too long.
+    """Return writhe and linking number (R,) of rods that are closed and not too long.
 
     What is not known is NaN.
     """

@@ -56,7 +56,9 @@ def scales_of(scene, settings=None) -> Scales:
     )
 
 
-def find_rest(scene, settings=None, saddle: bool = False, tell=lambda residual, steps: None) -> Rest:
+def find_rest(
+    scene, settings=None, saddle: bool = False, tell=lambda residual, steps: None
+) -> Rest:
     """Return the state at rest that the initial state of a scene descends to.
 
     settings : the section ``rest`` of the case, or None. saddle : stay at a state at rest that is

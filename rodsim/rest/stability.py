@@ -1,4 +1,4 @@
-"""Is a state at rest stable? Its growing and neutral modes, their shapes, and how fast they move."""
+"""Whether a state at rest is stable: its growing and neutral modes, their shapes and rates."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ``rest`` and ``stability`` start from: a case, a case with shapes of an output, an output."""
+"""What ``rest`` and ``stability`` start from: a case, or a frame of an output."""
 
 from __future__ import annotations
 

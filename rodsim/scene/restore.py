@@ -41,7 +41,7 @@ def scene_at(run, case: Case, frame: int) -> Scene:
     """
     names = {rod.name for rod in run.rods}
     if names != case.rods.keys():
-        raise FileError(f"{run.path}: has the rods {', '.join(sorted(names))}, not those of the case")
+        raise FileError(f"{run.path}: has the rods {', '.join(sorted(names))}: not the case's")
     if not -run.frames <= frame < run.frames:
         raise FileError(f"{run.path}: frame {frame} of {run.frames} does not exist")
     state = stored_state(run, frame)

@@ -121,7 +121,7 @@ def euler(points, load):
 
 
 def test_eulers_column_under_a_dead_load():
-    """It falls over, in any direction, above P L^2/a = pi^2/4; the rod may turn about itself not."""
+    """It falls over, in any direction, above P L^2/a = pi^2/4."""
     low, high = (euler(41, np.pi**2 / 4 * share) for share in (0.998, 1.002))
     assert (low.growing, low.neutral) == (0, 0)
     assert (high.growing, high.neutral) == (2, 0)
