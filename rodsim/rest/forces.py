@@ -13,6 +13,8 @@ from rodsim.scene.evaluation import Evaluation
 from rodsim.scene.state import Scene, State
 
 UNEVEN = 1e-7  # of the largest stiffness
+SMALL = 1e-4  # a motion, in rad and spacings
+ALIKE = 1e-5  # changes of the loads along it, of which differences leave 1e-8
 
 
 def exact_parts(scene: Scene) -> PartList:
@@ -43,14 +45,22 @@ class Forces:
         self._working = Evaluation(scene, others) if others else None
 
     def conservative_at(self, state: State) -> bool:
-        """Tell whether the loads are a gradient there: whether K is symmetric, and K is all.
+        """Tell whether the loads are a gradient there, and K all of its derivative.
 
-        That holds for dead loads, not for followers. A force that couples nodes and does not say
-        so gives other differences than K along a direction that moves all nodes.
+        K is not symmetric where loads turn with a rod. A force that couples nodes and does not say
+        so shows in the loads along a motion of all nodes, of which K then gives another change.
         """
         matrix = self.stiffness(state)
         uneven = abs(matrix - matrix.T).max()
-        return bool(uneven <= UNEVEN * abs(matrix).max())
+        if uneven > UNEVEN * abs(matrix).max():
+            return False
+        change = np.random.default_rng(1).normal(size=(6, self.scene.rods.points))
+        change[:3] *= SMALL * self.scene.rods.spacing.min()
+        change[3:] *= SMALL
+        change.flat[np.setdiff1d(np.arange(change.size), self.free)] = 0.0
+        ends = (self.loads(moved(state, side * change)).ravel() for side in (0.5, -0.5))
+        found, expected = np.subtract(*ends)[self.free], -(matrix @ change.ravel()[self.free])
+        return bool(abs(found - expected).max() <= ALIKE * abs(expected).max())
 
     def loads(self, state: State) -> np.ndarray:
         """Return g and m of all nodes, (6, N)."""

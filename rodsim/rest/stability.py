@@ -50,12 +50,13 @@ def stability_of(start: Start, count: int, with_rates: bool) -> Stability:
             f"--rates: dense matrices for up to {MOST_POINTS} points, here are "
             f"{scene.rods.points}: the number of growing modes needs none; for rates use fewer"
         )
-    if not exact.conservative_at(scene.initial):
+    newton = Descent(scene.initial, np.inf, GREATEST * scales.first)
+    near = descend(exact, newton, scales, STEPS, SAME, lambda *_: None)
+    if near.failure or not exact.conservative_at(near.state):
         paper = Forces(scene, exact=False)
         rates = _rates(paper, scene.initial) if with_rates else None
         return Stability(start, scene.initial, residual, None, rates)
-    newton = Descent(scene.initial, np.inf, GREATEST * scales.first)
-    state = descend(exact, newton, scales, STEPS, SAME, lambda *_: None).state
+    state = near.state
     modes = modes_of(exact, state, scales, count)
     if modes.neutral:
         modes = _without_neutral(modes_of(exact, state, scales, count + modes.neutral))

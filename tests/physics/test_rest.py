@@ -9,6 +9,7 @@ from scenes import load
 
 from rodsim.analysis.helix import fit_helix
 from rodsim.case import case_from_mapping
+from rodsim.compiled.parts import LOCAL, PartList
 from rodsim.rest.descent import SAME, Descent, descend
 from rodsim.rest.forces import Forces
 from rodsim.rest.output import topology
@@ -140,9 +141,25 @@ def test_a_pendulum_on_its_head_is_a_saddle_and_is_left():
     assert left.state.position[2, -1] < -1.7
 
 
+def test_a_force_that_hides_what_it_couples_is_found_out():
+    """Its stiffness would be taken for that of neighbours, and modes counted wrong."""
+    scene = hanging()
+    assert Forces(scene).conservative_at(scene.initial)
+    local = [replace(part, statics=LOCAL) if part.name == "tethers" else part
+             for part in scene.parts]  # fmt: skip
+    points = {"rod": "rod", "s": 0.3}, {"rod": "rod", "s": 1.9}
+    far = hanging(**{"from": points[0], "to": points[1], "length": 0.4})
+    assert Forces(far).conservative_at(far.initial)
+    hiding = [
+        replace(part, statics=LOCAL) if part.name == "tethers" else part for part in far.parts
+    ]
+    assert Forces(replace(scene, parts=PartList(local))).conservative_at(scene.initial)
+    assert not Forces(replace(far, parts=PartList(hiding))).conservative_at(far.initial)
+
+
 def test_what_is_pushed_and_not_held_never_rests():
     scene = hanging()
-    free = replace(scene, parts=type(scene.parts)(p for p in scene.parts if p.name != "tethers"))
+    free = replace(scene, parts=PartList(p for p in scene.parts if p.name != "tethers"))
     found = find_rest(free)
     assert "nothing holds the scene" in found.failure
     assert found.steps == 0
