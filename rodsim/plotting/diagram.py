@@ -22,11 +22,14 @@ def draw_diagram(axis, x, y, growing, labels):
     ``labels`` : text under the x axis, text beside the y axis.
     """
     x, y, growing = (np.asarray(values, float) for values in (x, y, growing))
-    for number, (part, name) in enumerate(_ways(x)):
+    ways = _ways(x)
+    for number, (part, name) in enumerate(ways):
         shade, mark = f"C{number}", "o^s"[number % 3]
-        axis.plot(x[part], y[part], "-", color=shade, lw=0.9, alpha=0.6, label=name)
+        axis.plot(x[part], y[part], "-", color=shade, lw=0.9, alpha=0.6)
         stable = growing[part] == 0
         axis.plot(x[part][stable], y[part][stable], mark, color=shade, ms=5)
+        if len(ways) > 1:
+            axis.plot([], [], "-", marker=mark, color=shade, ms=5, label=name)
         axis.plot(x[part][~stable], y[part][~stable], mark, color=shade, ms=5, mfc="white")
     for a, b, count in zip(x, y, growing, strict=True):
         if count > 0:

@@ -16,6 +16,8 @@ from rodsim.rest.output import topology
 from rodsim.rest.solve import find_rest, scales_of
 from rodsim.scene.build import build_scene
 
+pytestmark = pytest.mark.compiled  # interpreted they take hours
+
 
 def scene_of(*case, **more):
     return build_scene(case_from_mapping(case_of(*case, **more)))

@@ -27,6 +27,8 @@ from rodsim.rest.forces import Forces, moved
 from rodsim.rest.rates import main_rates, mobility, rates_of, shares_of
 from rodsim.scene.build import build_scene
 
+pytestmark = pytest.mark.compiled  # interpreted they take hours
+
 
 def michell(points, b=0.8, waves=(1.70, 1.80)):
     return threshold(lambda u: ring(points, [0, 0, u / R0], b), *waves)

@@ -148,6 +148,7 @@ def test_what_rest_refuses(config, options, reason, tmp_path):
     assert reason in result.stderr
 
 
+@pytest.mark.long
 def test_a_driven_rod_rests_at_a_time(tmp_path):
     """The flagellum's wave, stopped: free of stress as the sine it is at that time."""
     points = settings("rods.tail.shape.points=100", "rods.tail.shape.spacing=0.4")
@@ -164,6 +165,7 @@ def test_a_state_at_rest_is_no_run_to_go_on_with(folder):
     assert "is no run, but states at rest" in said.stderr
 
 
+@pytest.mark.long
 def test_a_diagram_there_and_back(tmp_path):
     """Stable as a circle up to the twist of theory; back on the branch it fell to: hysteresis."""
     values = "parameters.twist=[1.70, 1.75, 1.70]"
@@ -208,6 +210,7 @@ def test_options_that_do_not_fit_are_refused(tmp_path):
     assert "--from is for sweeps with --rest" in said.stderr
 
 
+@pytest.mark.long
 def test_a_plain_run_does_not_import_scipy(tmp_path):
     code = (
         "import sys\nfrom rodsim.cli import main\n"
