@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from scenes import CONFIGS
+from scenes import CONFIGS, load
 
 from rodsim import open_trajectory
 from rodsim.analysis.helix import fit_helix
@@ -202,11 +202,21 @@ def test_the_tethered_pair_bends_as_its_header_says(tmp_path):
         assert x[-1, :41, 1].mean() == pytest.approx(-x[-1, 41:, 1].mean(), rel=1e-6)
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize(("twist", "growing"), [(1.7, 0), (1.76, 2)])
+def test_michells_ring_is_stable_up_to_the_twist_of_its_header(twist, growing):
+    from rodsim.rest.solve import find_rest
+    from rodsim.scene.build import build_scene
+
+    scene = build_scene(load("michell_ring", f"parameters.twist={twist}"))
+    assert find_rest(scene, saddle=True).growing == growing
+
+
 def test_every_config_is_tested_here():
     assert {path.stem for path in CONFIGS.glob("*.yaml")} == {
         "open_rod", "open_rod_half_twist", "closed_ring", "closed_ring_low_twist", "flagellum",
         "two_flagella", "carpet",
         "plasmid", "traced_filament",
         "sedimenting_fibre", "fibre_in_shear", "tethered_pair",
-        "swimmer_at_wall", "fibre_settling_on_wall",
+        "swimmer_at_wall", "fibre_settling_on_wall", "michell_ring",
     }  # fmt: skip
