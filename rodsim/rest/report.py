@@ -76,7 +76,7 @@ def _links(report):
         if np.isfinite(lk[r]):
             yield (
                 f"rod {name}: linking number {round(lk[r])} -> {round(lk_after[r])}, "
-                f"writhe {wr[r]:.4g} -> {wr_after[r]:.4g}"
+                f"writhe {wr[r]:.5f} -> {wr_after[r]:.5f}"
             )
             if abs(lk_after[r] - lk[r]) > 0.5:
                 yield (

@@ -87,6 +87,8 @@ def find_rest(
     if not now.failure:
         now = descend(Forces(scene, exact=False), now, scales, most, PAPER, tell)
     failure = now.failure and f"{now.failure}; residual {now.residual:.3g}"
+    if not failure and now.state.position[2].min() < scene.floor:
+        failure = "the shape at rest goes through the wall, which holds nothing without contact"
     steps = now.steps, now.rejected
     return Rest(now.state, now.residual, scales.tolerance, *steps, *counts, left, failure)
 

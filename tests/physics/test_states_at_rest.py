@@ -159,6 +159,14 @@ def test_a_force_that_hides_what_it_couples_is_found_out():
     assert not Forces(replace(far, parts=PartList(hiding))).conservative_at(far.initial)
 
 
+def test_a_shape_that_goes_through_the_wall_is_no_state_at_rest():
+    """A wall holds back the fluid, not the rod."""
+    below = 0.9 - 0.6 - 2.3  # where the end of the heavy rod would hang, and lower
+    found = find_rest(replace(hanging(), wall=below + 0.3))
+    assert "goes through the wall" in found.failure
+    assert find_rest(replace(hanging(), wall=below - 0.5)).failure == ""
+
+
 def test_what_is_pushed_and_not_held_never_rests():
     scene = hanging()
     free = replace(scene, parts=PartList(p for p in scene.parts if p.name != "tethers"))
