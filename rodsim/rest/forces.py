@@ -14,7 +14,7 @@ from rodsim.scene.state import Scene, State
 
 UNEVEN = 1e-7  # of the largest stiffness
 SMALL = 1e-4  # a motion, in rad and spacings
-ALIKE = 1e-5  # changes of the loads along it, of which differences leave 1e-8
+ALIKE = 3e-7  # changes of the loads along it, of which differences leave 1e-8
 
 
 def exact_parts(scene: Scene) -> PartList:

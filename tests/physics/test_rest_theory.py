@@ -177,6 +177,16 @@ def test_how_a_straight_rod_relaxes(straight, mode, first, second):
             assert share == pytest.approx(wanted[1], abs=0.01)
 
 
+def test_the_stiffness_of_twist_of_a_straight_rod():
+    """A chain of torsion springs a/ds on weights eps^2: 4 a sin^2(n pi/(2 M))/(ds eps^2)."""
+    shape = {"kind": "straight", "points": 30, "length": 3.7}
+    moduli = moduli_of(twisting=2.1e-3)
+    found = modes(build_scene(case_from_mapping(case_of(shape, moduli, [0, 0, 0]))), 14)
+    expected = 4.0 * 2.1e-3 * np.sin(np.pi / 60) ** 2 / (3.7 / 29 * 0.314**2)
+    assert (found.growing, found.neutral) == (0, 6)
+    assert abs(found.values / expected - 1.0).min() < 1e-9
+
+
 def test_the_fastest_rate_of_a_straight_rod(straight):
     rates = straight[0].values
     assert rates[-1] == pytest.approx(-272254.9642, rel=1e-8)

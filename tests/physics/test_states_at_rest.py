@@ -11,7 +11,7 @@ from rodsim.analysis.helix import fit_helix
 from rodsim.case import case_from_mapping
 from rodsim.compiled.parts import LOCAL, PartList
 from rodsim.rest.descent import SAME, Descent, descend
-from rodsim.rest.forces import Forces
+from rodsim.rest.forces import Forces, moved
 from rodsim.rest.output import topology
 from rodsim.rest.solve import find_rest, scales_of
 from rodsim.scene.build import build_scene
@@ -141,6 +141,22 @@ def test_a_pendulum_on_its_head_is_a_saddle_and_is_left():
     assert kept.growing == 4
     assert left.growing == 0
     assert left.state.position[2, -1] < -1.7
+
+
+@pytest.mark.parametrize("length", [0.4, 1.9])
+def test_the_stiffness_of_a_tether_is_the_derivative_of_its_loads(length):
+    """Taut and pushed together, between places that lie between points."""
+    points = {"rod": "rod", "s": 0.3}, {"rod": "rod", "s": 1.9}
+    scene = hanging(**{"from": points[0], "to": points[1], "length": length})
+    alone = PartList(part for part in scene.parts if part.name == "tethers")
+    forces = Forces(replace(scene, parts=alone))
+    stiffness, step = forces.stiffness(scene.initial).toarray(), 1e-4
+    for number in np.flatnonzero(abs(stiffness).sum(axis=0)):
+        change = np.zeros((6, scene.rods.points))
+        change.flat[number] = step
+        ends = (forces.loads(moved(scene.initial, side * change)).ravel() for side in (1, -1))
+        slope = np.subtract(*ends) / (2.0 * step)
+        assert abs(slope + stiffness[:, number]).max() < 1e-7 * abs(stiffness).max()  # step^2
 
 
 def test_a_force_that_hides_what_it_couples_is_found_out():
