@@ -70,27 +70,31 @@ def find_rest(
     """
     scales, exact = scales_of(scene, settings), Forces(scene)
     most = settings.steps if settings else STEPS
-    now, left = Descent(scene.initial, np.inf, scales.first), 0
     if reason := _never(exact, scene.initial, scales):
         residual = scales.residual(exact.loads(scene.initial))
         return Rest(scene.initial, residual, scales.tolerance, 0, 0, failure=reason)
-    while True:
-        now = descend(exact, now, scales, most, SAME, tell)
-        if now.failure or not exact.conservative_at(now.state):
-            modes = None
-            break
-        modes = modes_of(exact, now.state, scales, COUNTED)
-        if not modes.growing or saddle or left == SADDLES:
-            break
-        now, left = _pushed(exact, now, modes, scales), left + 1
-    counts = (modes.growing, modes.neutral) if modes else (None, None)
+    now, modes, left = _settled(exact, scales, most, 0 if saddle else SADDLES, tell)
     if not now.failure:
         now = descend(Forces(scene, exact=False), now, scales, most, PAPER, tell)
     failure = now.failure and f"{now.failure}; residual {now.residual:.3g}"
     if not failure and now.state.position[2].min() < scene.floor:
         failure = "the shape at rest goes through the wall, which holds nothing without contact"
-    steps = now.steps, now.rejected
-    return Rest(now.state, now.residual, scales.tolerance, *steps, *counts, left, failure)
+    counts = (modes.growing, modes.neutral) if modes else (None, None)
+    cost = now.steps, now.rejected
+    return Rest(now.state, now.residual, scales.tolerance, *cost, *counts, left, failure)
+
+
+def _settled(exact, scales, most, saddles, tell):
+    """Return the end of a descent, its modes or None, and how many saddles were left on the way."""
+    now, left = Descent(exact.scene.initial, np.inf, scales.first), 0
+    while True:
+        now = descend(exact, now, scales, most, SAME, tell)
+        if now.failure or not exact.conservative_at(now.state):
+            return now, None, left
+        modes = modes_of(exact, now.state, scales, COUNTED)
+        if not modes.growing or left == saddles:
+            return now, modes, left
+        now, left = _pushed(exact, now, modes, scales), left + 1
 
 
 def _never(forces, state, scales):

@@ -45,11 +45,9 @@ def stability_of(start: Start, count: int, with_rates: bool) -> Stability:
     scene = start.scene
     scales, exact = scales_of(scene, start.case.rest), Forces(scene)
     residual = _at_rest(scene, scales)
-    if with_rates and scene.rods.points > MOST_POINTS:
-        raise UsageError(
-            f"--rates: dense matrices for up to {MOST_POINTS} points, here are "
-            f"{scene.rods.points}: the number of growing modes needs none; for rates use fewer"
-        )
+    if with_rates:
+        _not_too_many(scene.rods.points)
+    # The symmetric stiffness is that of the gradient's own state, a Newton step or two away.
     newton = Descent(scene.initial, np.inf, GREATEST * scales.first)
     near = descend(exact, newton, scales, STEPS, SAME, lambda *_: None)
     if near.failure or not exact.conservative_at(near.state):
@@ -60,6 +58,7 @@ def stability_of(start: Start, count: int, with_rates: bool) -> Stability:
     modes = modes_of(exact, state, scales, count)
     if modes.neutral:
         modes = _without_neutral(modes_of(exact, state, scales, count + modes.neutral))
+    # Rates take the mobility as well, and dense matrices.
     if not with_rates:
         return Stability(start, state, residual, modes)
     rates, stiffness = _rates(exact, state), exact.stiffness(state)
@@ -68,6 +67,15 @@ def stability_of(start: Start, count: int, with_rates: bool) -> Stability:
     if rates.vectors is not None:
         shares = np.array([shares_of(rates, stiffness, shape) for shape in flat])
     return Stability(start, state, residual, modes, rates, shares)
+
+
+def _not_too_many(points: int) -> None:
+    """Raise UsageError where dense matrices would take minutes."""
+    if points > MOST_POINTS:
+        raise UsageError(
+            f"--rates: dense matrices for up to {MOST_POINTS} points, here are {points}: "
+            "the number of growing modes needs none; for rates use fewer points"
+        )
 
 
 def _at_rest(scene, scales: Scales) -> float:
