@@ -82,6 +82,17 @@ def test_a_rest_starts_from_a_rest(folder, tmp_path):
         assert found[1] == pytest.approx(there[1], abs=1e-9)
 
 
+def test_a_rest_of_another_case_starts_from_a_rest(folder, tmp_path):
+    """Less twist at the same linking number 2: 2/r0 - 0.3 is stored, 2/r0 to O(ds^2), 0.7 %."""
+    output = tmp_path / "out.h5"
+    call("rest", folder / "rest.h5", *settings("rods.ring.strain_twist=[0, 0, 0.3]"), "-o", output)
+    with open_trajectory(output) as run:
+        expected = 0.5 * 3.5e-3 * (2.0 / 2.5 - 0.3) ** 2 * 5 * np.pi
+        assert run.observable("twisting_energy", -1)[0] == pytest.approx(expected, rel=2.5e-2)
+    idle = call("rest", folder / "rest.h5", *settings("parameters.twist=1.9"), code=2)
+    assert "--set parameters.twist=1.9: changes nothing" in idle.stderr
+
+
 def test_a_run_starts_from_a_rest_and_is_resumed(folder, tmp_path):
     """It stays where it is; the case in the file says where it came from."""
     short = settings("time.end=1e-3", "output.interval=1e-3")
