@@ -27,7 +27,7 @@ from rodsim.case.fields import (
     quantity,
 )
 from rodsim.compiled.kernels import part
-from rodsim.compiled.parts import FORCE, Part
+from rodsim.compiled.parts import FORCE, Part, Statics
 from rodsim.errors import CaseError
 from rodsim.forces.places import AT, S, arc_length, at_field, check_place, rod_named, s_field
 from rodsim.forces.places import shares as shares_at
@@ -128,10 +128,13 @@ def _build(case, scene) -> list[Part]:
     def observe(state, row, scene):
         return {"tether_energy": tether_energies(fixed, state.position)}
 
+    def stiffness(state, row, scene):
+        return tether_stiffness(fixed, state.position)
+
     kernel = "rodsim.forces.tethers:apply_tethers"
     return [
         Part("tethers", FORCE, kernel, fixed=fixed, external=True, potential=True,
-             observe=observe, series=series)
+             observe=observe, series=series, statics=Statics(stiffness=stiffness))
     ]  # fmt: skip
 
 
@@ -175,13 +178,36 @@ def apply_tethers(row, fixed, rods, state, loads, velocities):
 
 def tether_energies(fixed: np.ndarray, position: np.ndarray) -> np.ndarray:
     """Return 1/2 k (|d| - l)^2 of each tether, 0 where it is slack; position (3, N)."""
-    table = fixed.reshape(-1, TETHER)
-    places = []
-    for end in (table[:, 3 : 3 + END], table[:, 3 + END :]):
-        nodes, shares = end[:, :2].astype(int), end[:, 2:4]
-        places.append((position[:, nodes] * shares).sum(axis=2) + end[:, 4:].T)
-    stretched = np.linalg.norm(places[1] - places[0], axis=0) - table[:, 1]
+    table, _, _, d = _vectors(fixed, position)
+    stretched = np.linalg.norm(d, axis=0) - table[:, 1]
     return np.where(stretched * table[:, 2] < 0.0, 0.0, 0.5 * table[:, 0] * stretched**2)
+
+
+def tether_stiffness(fixed: np.ndarray, position: np.ndarray):
+    """Return the second derivatives of the energies as (i, j, blocks), see ``parts.Statics``.
+
+    With shares w of the nodes in d they are w_i w_j k ((1 - l/|d|) 1 + l d d^T/|d|^3).
+    """
+    table, nodes, weights, d = _vectors(fixed, position)
+    distance = np.linalg.norm(d, axis=0)
+    taut = (distance - table[:, 1]) * table[:, 2] >= 0.0
+    share = np.divide(table[:, 1], distance, out=np.zeros_like(distance), where=distance > 0.0)
+    unit = d / np.where(distance > 0.0, distance, 1.0)
+    along = share * unit[:, None] * unit[None] + (1.0 - share) * np.eye(3)[:, :, None]
+    blocks = np.einsum("t,ta,tb,cdt->tabcd", table[:, 0] * taut, weights, weights, along)
+    first = np.repeat(nodes[:, :, None], 4, axis=2)
+    return first.ravel(), first.swapaxes(1, 2).ravel(), blocks.reshape(-1, 3, 3)
+
+
+def _vectors(fixed, position):
+    """Return the table of tethers (t, 17), the nodes and weights (t, 4) of d, and d (3, t)."""
+    table = fixed.reshape(-1, TETHER)
+    ends = table[:, 3 : 3 + END], table[:, 3 + END :]
+    nodes = np.concatenate([end[:, :2] for end in ends], axis=1).astype(int)
+    weights = np.concatenate([-ends[0][:, 2:4], ends[1][:, 2:4]], axis=1)
+    weights, nodes = np.where(nodes < 0, 0.0, weights), np.maximum(nodes, 0)
+    d = (position[:, nodes] * weights).sum(axis=2) + ends[1][:, 4:].T - ends[0][:, 4:].T
+    return table, nodes, weights, d
 
 
 KIND = Kind(
