@@ -79,12 +79,14 @@ class Statics:
     holds : degrees of freedom that it keeps where they are, c N + k for component c (x, y, z, then
     three of the rotation vector) of node k.
     move : the farthest that a point may move in one step, length.
+    refused : why states at rest cannot be looked for with it, if they cannot.
     """
 
     exact: Kernel | str | None = None
     stiffness: Callable | None = None
     holds: tuple[int, ...] = ()
     move: float = math.inf
+    refused: str = ""
 
 
 LOCAL = Statics()

@@ -100,6 +100,8 @@ def _settled(exact, scales, most, saddles, tell):
 def _never(forces, state, scales):
     """Return why nothing can come to rest, or nothing: forces on what is free to move on."""
     n = forces.scene.rods.points
+    if refused := next((p.statics.refused for p in forces.scene.parts if p.statics.refused), ""):
+        return refused
     stiffness, every = forces.stiffness(state), np.zeros((6 * n, 3))
     for axis in range(3):
         every[axis * n : (axis + 1) * n, axis] = 1.0
