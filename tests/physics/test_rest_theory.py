@@ -49,6 +49,7 @@ def test_michells_ring_buckles_at_the_twist_of_theory():
     assert extrapolated(*found) == pytest.approx(theory, rel=1e-7)
 
 
+@pytest.mark.long
 def test_michells_ring_of_stiff_shear():
     assert michell(80, b=80.0) == pytest.approx(1.732484, rel=1e-5)
 

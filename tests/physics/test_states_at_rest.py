@@ -43,7 +43,10 @@ def test_an_open_rod_rests_as_the_exact_helix():
     assert abs(helix.turns) == pytest.approx(75 * turn / (2 * np.pi), rel=1e-9)
 
 
-RING = [(50, 0.005774315, 0.005774221), (100, 0.005915904, 0.005915897)]
+RING = [
+    (50, 0.005774315, 0.005774221),
+    pytest.param(100, 0.005915904, 0.005915897, marks=pytest.mark.long),
+]
 
 
 @pytest.mark.parametrize(("points", "paper", "exact"), RING)
