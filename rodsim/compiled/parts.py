@@ -27,6 +27,9 @@ class Part:
     series : those beyond the ones of every scene, (name, shape, dimension) each.
     pressure : called with (points (3, T), sources (3, N), loads (6, N), t), returns its share of
     the pressure (T,).
+    prepare : called with (state, loads (6, N)) where a step begins, returns ``fixed`` for that
+    step: what depends on the state alone and is to be frozen over a step.
+    needs : where the kernels are that ``prepare`` calls beside the part's own, if any.
     """
 
     name: str
@@ -40,6 +43,8 @@ class Part:
     observe: Callable | None = None
     series: tuple = ()
     pressure: Callable | None = None
+    prepare: Callable | None = None
+    needs: tuple[str, ...] = ()
 
     @property
     def where(self) -> str:

@@ -39,7 +39,7 @@ def ensure_compiled(scene, say) -> float:
         say(compiling)
         return 0.0
     folder = Path(os.environ["NUMBA_CACHE_DIR"])
-    kernels = sorted({part.where for part in scene.parts})
+    kernels = sorted({where for part in scene.parts for where in (part.where, *part.needs)})
     # A folder that the user has set can be shared by several versions and installations.
     kind = "-".join((fingerprint(), *kernels))
     if is_compiled(folder, kind):
