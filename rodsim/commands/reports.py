@@ -11,8 +11,9 @@ from rodsim.commands.groups import (
     describe_rods,
     in_water_units,
 )
+from rodsim.commands.sums import describe_sums
 from rodsim.errors import FileError
-from rodsim.run.ending import Motion, gap_sentence
+from rodsim.run.ending import Motion, SumErrors, gap_sentence
 from rodsim.run.recorder import frame_times
 from rodsim.scene.at_wall import mirror_gap
 from rodsim.scene.build import build_scene
@@ -53,6 +54,7 @@ def describe_case(case, refuse=False) -> str:
     for name, count in scene.tracer_groups.items():
         lines.append(f"tracers {name}: {count} markers")
     lines += describe_groups(case, scene)
+    lines += describe_sums(case, scene)
     time = case.time
     option = METHODS[time.integrator].option
     how = f"{option} {getattr(time, option):g}"
@@ -145,7 +147,9 @@ def _endings(run):
         return []
     motion = Motion(is_driven(case))
     motion.read(run, run.frames)
-    sentences = [motion.sentence(run.units)]
+    errors = SumErrors(case)
+    errors.read(run, run.frames)
+    sentences = [motion.sentence(run.units), errors.sentence()]
     if "gap" in run.observables:
         gaps = run.observable("gap")
         k, diameter = int(gaps.argmin()), stored_diameter(run, case)

@@ -37,10 +37,20 @@ STATE = f"Tuple(({MAT}, {TRIADS}, {MAT}))"  # position, director, tracer
 PART = f"void({VEC}, {VEC}, {RODS}, {STATE}, {MAT}, UniTuple({MAT}, 2))"  # compiled.kernels
 ONE = np.uint64(1)
 
+# What Numba may run in parallel; all but prange costs seconds of compiling and saves nothing.
+PARALLEL = (
+    "prange", "numpy", "setitem", "inplace_binop", "comprehension", "reduction", "stencil", "fusion"
+)  # fmt: skip
 SUM_FLAGS = {"reassoc", "contract", "arcp", "nsz"}
 
 kernel = partial(cached_njit, error_model="numpy")
 parallel_kernel = partial(cached_njit, error_model="numpy", parallel=True, fastmath=SUM_FLAGS)
+threaded_kernel = partial(
+    cached_njit,
+    error_model="numpy",
+    fastmath=SUM_FLAGS,
+    parallel={name: name == "prange" for name in PARALLEL},
+)
 unsigned = kernel  # without a signature: compiled with whatever calls it
 inline = partial(cached_njit, error_model="numpy", inline="always")
 

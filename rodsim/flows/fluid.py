@@ -31,9 +31,10 @@ def fluid_parts(scene) -> list[Part]:
     return [
         Part("fluid", FLOW, f"{home}:{kind}_{blob}", fixed=fixed),
         Part(
-            "fluid", TRACERS, f"{home}:tracers_{blob}", fixed=fixed, pressure=pressure_of(scene, home)
+            "fluid", TRACERS, f"{home}:tracers_{blob}", fixed=fixed,
+            pressure=pressure_of(scene, home),
         ),
-    ]
+    ]  # fmt: skip
 
 
 def pressure_of(scene, home):

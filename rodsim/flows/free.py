@@ -37,7 +37,7 @@ EIGHT_PI = 8.0 * math.pi
 
 @inline
 def add_up(blob, planar, angular, x, y, z, sources, loads, e2):
-    """Return 8 pi mu (u, w) at one target, from all sources: the first three constants choose it."""
+    """Return 8 pi mu (u, w) at one target, from all sources; constants choose the sum."""
     ux, uy, uz, wx, wy, wz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(sources.shape[1]):
         ry, rz = y - sources[1, k], z - sources[2, k]
@@ -80,9 +80,7 @@ def _sum(blob, planar, angular):
         scale = 1.0 / (EIGHT_PI * viscosity)
         for i in prange(targets.shape[1]):
             x, y, z = targets[0, i], targets[1, i], targets[2, i]
-            ux, uy, uz, wx, wy, wz = add_up(
-                blob, planar, angular, x, y, z, sources, loads, e2
-            )
+            ux, uy, uz, wx, wy, wz = add_up(blob, planar, angular, x, y, z, sources, loads, e2)
             out[0, i] += scale * ux
             out[1, i] += scale * uy
             out[2, i] += scale * uz

@@ -8,10 +8,9 @@ not of truth, for the error of the sums is measured.
 
 import math
 
-import numpy as np
 from numba import prange
 
-from rodsim.compiled.flags import INT_MAT32, INTS32, MAT, VEC, inline, kernel, parallel_kernel
+from rodsim.compiled.flags import INT_MAT32, INTS32, MAT, VEC, inline, kernel, threaded_kernel
 from rodsim.flows.fast.arcs import COUNT, LO, PROXIES, RIGHT, START, WEIGHT
 
 ARCS = f"{INT_MAT32}, {INTS32}, {VEC}, {INT_MAT32}, {INTS32}"  # nodes ... tops, see Arcs
@@ -95,7 +94,7 @@ def _bound(X, begin, end, nodes, proxies, weights, chunks, tops, bounds):
             _of_halved(X, nodes, proxies, weights, bounds, a)
 
 
-@parallel_kernel(f"void({MAT}, {ARCS}, {MAT})")
+@threaded_kernel(f"void({MAT}, {ARCS}, {MAT})")
 def bound(X, nodes, proxies, weights, chunks, tops, bounds):
     """Write radius, half length and roughness of all arcs into ``bounds`` (3, K)."""
     for c in prange(chunks.shape[0]):

@@ -10,52 +10,44 @@ import math
 
 import numpy as np
 
-from rodsim.compiled.flags import INT_MAT32, INTS32, MAT, inline, kernel
+from rodsim.compiled.flags import INT_MAT32, INTS32, MAT, VEC, inline, kernel
 from rodsim.flows.fast.arcs import COUNT, LO, RIGHT
 from rodsim.flows.fast.bounds import HALF, RADIUS, ROUGH, off_chord
-from rodsim.flows.fast.lists import DEPTH
+from rodsim.flows.fast.lists import DEPTH, TIE
 
 MOST = 64  # targets in a group
 
 
-@inline
-def _box(targets, order, begin, end, low, high):
-    low[:], high[:] = math.inf, -math.inf
-    for k in range(begin, end):
-        for c in range(3):
-            low[c] = min(low[c], targets[c, order[k]])
-            high[c] = max(high[c], targets[c, order[k]])
-
-
-@kernel(f"Tuple(({INTS32}, {INTS32}))({MAT})")
-def grouped(targets):
+def grouped(targets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return targets (3, T) in an order, and where each group begins: (T,), (G + 1,)."""
-    count = targets.shape[1]
-    order = np.arange(count).astype(np.int32)
-    begins = np.empty(count + 1, dtype=np.int32)
-    stack, top, groups = np.empty((DEPTH, 2), dtype=np.int64), 0, 0
-    low, high = np.empty(3), np.empty(3)
-    if count > 0:
-        stack[0, 0], stack[0, 1], top = 0, count, 1
-    while top > 0:
-        top -= 1
-        begin, end = stack[top, 0], stack[top, 1]
+    order, begins = np.arange(targets.shape[1]), []
+    waiting = [(0, targets.shape[1])]
+    while waiting:
+        begin, end = waiting.pop()
         if end - begin <= MOST:
-            begins[groups] = begin
-            groups += 1
+            begins.append(begin)
             continue
-        _box(targets, order, begin, end, low, high)
-        axis = np.argmax(high - low)
-        along = np.empty(end - begin)
-        for k in range(begin, end):
-            along[k - begin] = targets[axis, order[k]]
-        order[begin:end] = order[begin:end][np.argsort(along, kind="mergesort")]
+        some = targets[:, order[begin:end]]
+        axis = np.argmax(np.ptp(some, axis=1))
+        order[begin:end] = order[begin:end][np.argsort(some[axis], kind="stable")]
         middle = (begin + end) // 2
-        stack[top, 0], stack[top, 1] = middle, end
-        stack[top + 1, 0], stack[top + 1, 1] = begin, middle
-        top += 2
-    begins[groups] = count
-    return order, begins[: groups + 1].copy()
+        waiting += [(middle, end), (begin, middle)]
+    return order.astype(np.int32), np.array([*begins, targets.shape[1]], dtype=np.int32)
+
+
+@kernel(f"Tuple(({VEC}, float64))({MAT}, {INTS32})")
+def _ball(targets, members):
+    """Return the middle of the box around some targets, and how far they are from it."""
+    low, high, radius2 = np.full(3, math.inf), np.full(3, -math.inf), 0.0
+    for k in members:
+        for c in range(3):
+            low[c], high[c] = min(low[c], targets[c, k]), max(high[c], targets[c, k])
+    for c in range(3):
+        low[c] = 0.5 * (low[c] + high[c])
+    for k in members:
+        dx, dy, dz = targets[0, k] - low[0], targets[1, k] - low[1], targets[2, k] - low[2]
+        radius2 = max(radius2, dx * dx + dy * dy + dz * dz)
+    return low, math.sqrt(radius2)
 
 
 @inline
@@ -70,7 +62,7 @@ def _look(points, nodes, bounds, roots, middle, radius, theta, smooth, stack, fa
             first, last = nodes[a, LO], nodes[a, LO] + nodes[a, COUNT] - 1
             apart = off_chord(middle[0], middle[1], middle[2], points, first, last)
             gap = apart - bounds[RADIUS, a] - radius
-            distant = gap > 0.0 and theta * gap >= bounds[HALF, a]
+            distant = gap > 0.0 and theta * gap >= TIE * bounds[HALF, a]
             if distant and bounds[ROUGH, a] <= smooth * gap:
                 if nfar < far.size:
                     far[nfar] = a
@@ -90,7 +82,8 @@ def _wider(array, used, size):
     if size <= array.size:
         return array
     wider = np.empty(size, dtype=np.int32)
-    wider[:used] = array[:used]
+    for k in range(used):
+        wider[k] = array[k]
     return wider
 
 
@@ -101,18 +94,11 @@ def _wider(array, used, size):
 def lists_of_groups(points, targets, order, begins, nodes, bounds, roots, theta, smooth):
     """Return (begins, arcs) of all groups' far arcs, and of their near ones."""
     groups = begins.size - 1
-    low, high = np.empty(3), np.empty(3)
     stack = np.empty(DEPTH, dtype=np.int64)
     far, near = np.empty(1024, dtype=np.int32), np.empty(1024, dtype=np.int32)
     ends = np.zeros((2, groups + 1), dtype=np.int32)
     for g in range(groups):
-        _box(targets, order, begins[g], begins[g + 1], low, high)
-        middle, radius = 0.5 * (low + high), 0.0
-        for k in range(begins[g], begins[g + 1]):
-            away = 0.0
-            for c in range(3):
-                away += (targets[c, order[k]] - middle[c]) ** 2
-            radius = max(radius, math.sqrt(away))
+        middle, radius = _ball(targets, order[begins[g] : begins[g + 1]])
         for _ in range(2):  # once more where there was not enough room
             f, n = _look(
                 points, nodes, bounds, roots, middle, radius, theta, smooth, stack,
@@ -123,4 +109,5 @@ def lists_of_groups(points, targets, order, begins, nodes, bounds, roots, theta,
                 break
             far = _wider(far, ends[0, g], 2 * ends[0, g + 1])
             near = _wider(near, ends[1, g], 2 * ends[1, g + 1])
-    return ends[0].copy(), far[: ends[0, groups]].copy(), ends[1].copy(), near[: ends[1, groups]].copy()
+    far, near = far[: ends[0, groups]].copy(), near[: ends[1, groups]].copy()
+    return ends[0].copy(), far, ends[1].copy(), near

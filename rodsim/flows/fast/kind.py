@@ -1,7 +1,8 @@
-"""The word ``sums``: how exact the sums over all points are to be, ``fluid: {sums: {accuracy: a}}``.
+"""The word ``sums``: how exact the sums over all points are to be.
 
-With it the velocities are good to a relative error a, root mean square over the points, at a cost
-that grows about as their number; without it they are exact, at one that grows as its square.
+With ``fluid: {sums: {accuracy: a}}`` the velocities are good to a relative error a, root mean
+square over the points, at a cost that grows about as their number; without it they are exact, at
+one that grows as its square.
 """
 
 from __future__ import annotations

@@ -15,12 +15,22 @@ import math
 import numpy as np
 from numba import prange
 
-from rodsim.compiled.flags import INT_MAT32, INTS, INTS32, MAT, inline, kernel, parallel_kernel
+from rodsim.compiled.flags import (
+    INT_MAT32,
+    INTS,
+    INTS32,
+    MAT,
+    inline,
+    kernel,
+    threaded_kernel,
+    unsigned,
+)
 from rodsim.flows.fast.arcs import COUNT, LO, RIGHT
 from rodsim.flows.fast.bounds import HALF, RADIUS, ROUGH
 
 TASKS = 2048  # pairs that are looked into at the same time, or more
 DEPTH = 256  # of a stack: a pair leaves fewer than 3 behind at each halving
+TIE = 1.0 - 1e-9  # arcs of one length, gaps of whole spacings: rounding must not decide
 SPLIT_FIRST, SPLIT_SECOND, SPLIT_BOTH, IS_FAR, IS_NEAR = range(5)
 
 
@@ -58,25 +68,23 @@ def _between_chords(X, p, q, r, s):
     return math.sqrt(x * x + y * y + z * z)
 
 
-@inline
+@unsigned
 def _verdict(X, nodes, bounds, a, b, theta, smooth):
     """Return what becomes of a pair of arcs."""
     one, two = nodes[a], nodes[b]
     if a == b:
         return SPLIT_BOTH if one[RIGHT] > 0 else IS_NEAR
-    apart = _between_chords(
-        X, one[LO], one[LO] + one[COUNT] - 1, two[LO], two[LO] + two[COUNT] - 1
-    )
+    apart = _between_chords(X, one[LO], one[LO] + one[COUNT] - 1, two[LO], two[LO] + two[COUNT] - 1)
     gap = apart - bounds[RADIUS, a] - bounds[RADIUS, b]
     longer = max(bounds[HALF, a], bounds[HALF, b])
     rougher = max(bounds[ROUGH, a], bounds[ROUGH, b])
-    distant = gap > 0.0 and theta * gap >= longer
+    distant = gap > 0.0 and theta * gap >= TIE * longer
     if distant and rougher <= smooth * gap:
         return IS_FAR
     if one[RIGHT] == 0 and two[RIGHT] == 0:
         return IS_NEAR
     which = ROUGH if distant else HALF
-    first = two[RIGHT] == 0 or (one[RIGHT] > 0 and bounds[which, a] >= bounds[which, b])
+    first = two[RIGHT] == 0 or (one[RIGHT] > 0 and bounds[which, a] >= TIE * bounds[which, b])
     return SPLIT_FIRST if first else SPLIT_SECOND
 
 
@@ -113,7 +121,7 @@ def _tasks(X, nodes, bounds, roots, theta, smooth):
         for i in range(pairs.shape[0]):
             a, b = pairs[i, 0], pairs[i, 1]
             verdict = _verdict(X, nodes, bounds, a, b, theta, smooth)
-            if verdict == IS_FAR or verdict == IS_NEAR:
+            if verdict >= IS_FAR:
                 wider[k, 0], wider[k, 1] = a, b
                 k += 1
             else:
@@ -151,7 +159,7 @@ def _look_into(X, nodes, bounds, theta, smooth, a, b, stack, found, far, near):
             top = _push(nodes, i, j, verdict, stack, top)
 
 
-@parallel_kernel(
+@threaded_kernel(
     f"Tuple(({INT_MAT32}, {INT_MAT32}))({MAT}, {INT_MAT32}, {MAT}, {INTS32}, float64, float64)"
 )
 def pairs_of_arcs(X, nodes, bounds, roots, theta, smooth):
@@ -172,7 +180,8 @@ def pairs_of_arcs(X, nodes, bounds, roots, theta, smooth):
             _look_into(X, nodes, bounds, theta, smooth, a, b, *args)
     ends = np.zeros((blocks + 1, 2), dtype=np.int64)
     for block in range(blocks):
-        ends[block + 1] = ends[block] + counts[block]
+        for kind in range(2):
+            ends[block + 1, kind] = ends[block, kind] + counts[block, kind]
     far = np.empty((ends[blocks, 0], 2), dtype=np.int32)
     near = np.empty((ends[blocks, 1], 2), dtype=np.int32)
     for block in prange(blocks):

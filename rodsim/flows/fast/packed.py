@@ -6,7 +6,7 @@ many entries it has, then the tables. Those of integers have two in the room of 
 
 import numpy as np
 
-from rodsim.compiled.flags import inline
+from rodsim.compiled.flags import unsigned
 
 EPSILON, VISCOSITY, WALL, HEAD = range(4)
 (
@@ -39,28 +39,28 @@ def _as_floats(table):
     return even.view(np.float64)
 
 
-@inline
+@unsigned
 def integers(fixed, which):
     """Return a table of integers."""
     begin, count = int(fixed[HEAD + 2 * which]), int(fixed[HEAD + 2 * which + 1])
     return fixed[begin : begin + (count + 1) // 2].view(np.int32)[:count]
 
 
-@inline
+@unsigned
 def rows(fixed, which, width):
     """Return a table of integers in rows."""
     table = integers(fixed, which)
     return table.reshape((table.size // width, width))
 
 
-@inline
+@unsigned
 def floats(fixed, which):
     """Return a table of floats."""
     begin, count = int(fixed[HEAD + 2 * which]), int(fixed[HEAD + 2 * which + 1])
     return fixed[begin : begin + count]
 
 
-@inline
+@unsigned
 def work(fixed, which):
     """Return the arcs or groups to work on, and where the share of each turn begins."""
     return integers(fixed, which), integers(fixed, which + 1)

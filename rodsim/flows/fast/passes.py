@@ -3,17 +3,21 @@
 Both are the same matrix P and its transpose, so that the mobility P^T K P is symmetric if K is.
 """
 
+from functools import partial
+
 import numpy as np
 from numba import prange
 
-from rodsim.compiled.flags import MAT, SUM_FLAGS, inline, kernel, parallel_kernel
+from rodsim.compiled.flags import MAT, SUM_FLAGS, kernel, threaded_kernel
 from rodsim.flows.fast.arcs import COUNT, LO, PROXIES, RIGHT, START, WEIGHT
 from rodsim.flows.fast.bounds import ARCS
 
+summing = partial(kernel, fastmath=SUM_FLAGS)
 
-@inline
+
+@summing
 def _spread(w, stride, values, begin, count, out, start, p):
-    """Add loads to those of p proxies: out_j += sum_k W_jk values_k, ``count`` from ``begin`` on."""
+    """Add ``count`` loads to those of p proxies: out_j += sum_k W_jk values_k."""
     begin, stride, row = np.uint64(begin), np.uint64(stride), np.uint64(0)
     for j in range(p):
         for c in range(6):
@@ -24,7 +28,7 @@ def _spread(w, stride, values, begin, count, out, start, p):
         row += stride
 
 
-@kernel(f"void({MAT}, {MAT}, int64, int64, {ARCS}, {MAT}, {MAT})", fastmath=SUM_FLAGS)
+@kernel(f"void({MAT}, {MAT}, int64, int64, {ARCS}, {MAT}, {MAT})")
 def _up(points, loads, begin, end, nodes, slots, weights, chunks, tops, places, shares):
     """Gather at the proxies of the arcs begin <= a < end, halves before what they make."""
     for a in range(end - 1, begin - 1, -1):
@@ -44,7 +48,7 @@ def _up(points, loads, begin, end, nodes, slots, weights, chunks, tops, places, 
         _spread(w[before:], before + after, shares, right[START], after, shares, start, p)
 
 
-@parallel_kernel(f"UniTuple({MAT}, 3)({ARCS}, {MAT}, {MAT})")
+@threaded_kernel(f"UniTuple({MAT}, 3)({ARCS}, {MAT}, {MAT})")
 def up(nodes, slots, weights, chunks, tops, points, loads):
     """Return places (3, Q) and loads (6, Q) of all proxies, and velocities (6, Q) at zero."""
     arcs = nodes, slots, weights, chunks, tops
@@ -56,7 +60,7 @@ def up(nodes, slots, weights, chunks, tops, points, loads):
     return places, shares, np.zeros((6, slots.size))
 
 
-@inline
+@summing
 def collect(w, stride, values, start, p, scale, out, begin, count):
     """Add velocities of p proxies to points: out_k += scale sum_j W_jk values_j."""
     begin, stride, row = np.uint64(begin), np.uint64(stride), np.uint64(0)
@@ -68,35 +72,36 @@ def collect(w, stride, values, start, p, scale, out, begin, count):
         row += stride
 
 
-@kernel(f"void(int64, int64, {ARCS}, {MAT})", fastmath=SUM_FLAGS)
-def _down(begin, end, nodes, slots, weights, chunks, tops, velocities):
+@kernel(f"void(int64, int64, {ARCS}, float64, {MAT}, {MAT})")
+def _down(begin, end, nodes, slots, weights, chunks, tops, scale, velocities, out):
     """Hand the velocities at the proxies of begin <= a < end on to those of their halves."""
     for a in range(begin, end):
         node = nodes[a]
+        start, p, w = node[START], node[PROXIES], weights[node[WEIGHT] :]
         if node[RIGHT] == 0:
+            collect(w, node[COUNT], velocities, start, p, scale, out, node[LO], node[COUNT])
             continue
         left, right = nodes[a + 1], nodes[node[RIGHT]]
-        start, p, w = node[START], node[PROXIES], weights[node[WEIGHT] :]
         before, after = left[PROXIES], right[PROXIES]
         stride, v = before + after, velocities
         collect(w, stride, v, start, p, 1.0, v, left[START], before)
         collect(w[before:], stride, v, start, p, 1.0, v, right[START], after)
 
 
-@parallel_kernel(f"void({ARCS}, {MAT})")
-def down(nodes, slots, weights, chunks, tops, velocities):
-    """Add the velocities (6, Q) at proxies of halved arcs to those at the proxies of halves."""
+@threaded_kernel(f"void({ARCS}, float64, {MAT}, {MAT})")
+def down(nodes, slots, weights, chunks, tops, scale, velocities, out):
+    """Hand velocities (6, Q) on from proxies to those of halves, and add to points: out (6, N)."""
     arcs = nodes, slots, weights, chunks, tops
     for t in range(tops.size):
-        _down(tops[t], tops[t] + 1, *arcs, velocities)
+        _down(tops[t], tops[t] + 1, *arcs, scale, velocities, out)
     for c in prange(chunks.shape[0]):
-        _down(chunks[c, 0], chunks[c, 1], *arcs, velocities)
+        _down(chunks[c, 0], chunks[c, 1], *arcs, scale, velocities, out)
 
 
 LANES = 8  # sources come in multiples of it, the rest without loads: what is left over is slow
 
 
-@inline
+@summing
 def room_for(count):
     """Return places (3, n) and loads (6, n) for so many sources, the last few without loads."""
     n = (count + LANES - 1) // LANES * LANES
@@ -108,7 +113,7 @@ def room_for(count):
     return places, loads
 
 
-@inline
+@summing
 def copy_sources(places, loads, begin, count, to_places, to_loads, at):
     """Copy ``count`` sources; return where the next ones go."""
     begin, here = np.uint64(begin), np.uint64(at)

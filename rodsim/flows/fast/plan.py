@@ -82,11 +82,20 @@ class RodSum(FastSum):
         self.kernel = sum_kernel(BLOBS[blob], planar)
         self.exact = velocity_kernel(BLOBS[blob], planar)
 
+    def sampled(self, points) -> np.ndarray:
+        """Return the points (3, S) at which the error is measured."""
+        return np.ascontiguousarray(points[:, _spread_out(self.arcs.points)])
+
+    def count(self, points) -> np.ndarray:
+        """Return the tables by the first rule, and set ``pairs``, without any measuring."""
+        sample = _spread_out(self.arcs.points)
+        return self.tables(points, self.bounds(points), next(self.rules()), sample)
+
     def prepare(self, points, loads) -> np.ndarray:
         """Return the tables for points (3, N), so that the sum of loads (6, N) is good enough."""
         bounds, sample = self.bounds(points), _spread_out(self.arcs.points)
-        targets, exact = np.ascontiguousarray(points[:, sample]), np.zeros((6, len(sample)))
-        self.exact(targets, points, loads, *self.fluid, exact)
+        exact = np.zeros((6, len(sample)))
+        self.exact(self.sampled(points), points, loads, *self.fluid, exact)
         for rule in self.rules():
             fixed = self.tables(points, bounds, rule, sample)
             found = np.zeros_like(loads)

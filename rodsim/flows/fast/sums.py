@@ -7,10 +7,10 @@ fix, so the result does not depend on the number of threads.
 
 from numba import prange
 
-from rodsim.compiled.flags import inline, parallel_kernel
+from rodsim.compiled.flags import inline, threaded_kernel, unsigned
 from rodsim.compiled.kernels import part
 from rodsim.flows.blobs import ALGEBRAIC7, ALGEBRAIC9
-from rodsim.flows.fast.arcs import COUNT, LO, PROXIES, START, WEIGHT
+from rodsim.flows.fast.arcs import COUNT, LO, PROXIES, START
 from rodsim.flows.fast.packed import (
     CHUNKS,
     EPSILON,
@@ -34,75 +34,64 @@ from rodsim.flows.fast.packed import (
     rows,
     work,
 )
-from rodsim.flows.fast.passes import collect, copy_sources, down, room_for, up
+from rodsim.flows.fast.passes import copy_sources, down, room_for, up
 from rodsim.flows.free import EIGHT_PI, add_up
 
 
-@inline
-def gathered(nodes, partners, first, count, places, loads):
-    """Return places and loads of some arcs, one after another: columns first, count of ``nodes``."""
+@unsigned
+def _total(nodes, partners, count):
     total = 0
     for b in partners:
         total += nodes[b, count]
-    to_places, to_loads = room_for(total)
-    at = 0
+    return total
+
+
+@unsigned
+def _gather(nodes, partners, first, count, places, loads, to_places, to_loads, at):
+    """Copy the sources of some arcs, those that two columns of ``nodes`` name; return the end."""
     for b in partners:
         at = copy_sources(places, loads, nodes[b, first], nodes[b, count], to_places, to_loads, at)
-    return to_places, to_loads
+    return at
 
 
 @inline
-def _far_from(blob, planar, nodes, a, partners, places, loads, e2, out):
-    """Write the sums of the proxies of some arcs at the proxies of arc a."""
-    sources, g = gathered(nodes, partners, START, PROXIES, places, loads)
-    for i in range(nodes[a, START], nodes[a, START] + nodes[a, PROXIES]):
+def _act(blob, planar, nodes, a, partners, first, count, places, loads, e2, scale, out):
+    """Add the sums over the sources of some arcs at those of arc a: its points, or its proxies."""
+    sources, g = room_for(_total(nodes, partners, count))
+    _gather(nodes, partners, first, count, places, loads, sources, g, 0)
+    for i in range(nodes[a, first], nodes[a, first] + nodes[a, count]):
         x, y, z = places[0, i], places[1, i], places[2, i]
         six = add_up(blob, planar, True, x, y, z, sources, g, e2)
         for c in range(6):
-            out[c, i] = six[c]
-
-
-@inline
-def _near(blob, planar, nodes, a, partners, points, loads, weights, far, e2, scale, out):
-    """Add the sums of the points of some arcs at the points of arc a, and what comes from far."""
-    sources, g = gathered(nodes, partners, LO, COUNT, points, loads)
-    first, m = nodes[a, LO], nodes[a, COUNT]
-    for i in range(first, first + m):
-        x, y, z = points[0, i], points[1, i], points[2, i]
-        six = add_up(blob, planar, True, x, y, z, sources, g, e2)
-        for c in range(6):
             out[c, i] += scale * six[c]
-    w = weights[nodes[a, WEIGHT] :]
-    collect(w, m, far, nodes[a, START], nodes[a, PROXIES], scale, out, first, m)
 
 
 def _fast_sum(blob, planar):
     """Make the whole sum of a blob, for any scene or a planar one."""
 
-    @parallel_kernel
+    @threaded_kernel
     def fast_sum(fixed, points, loads, sampled, out):
         e2 = fixed[EPSILON] * fixed[EPSILON]
         scale = 1.0 / (EIGHT_PI * fixed[VISCOSITY])
         nodes, weights = rows(fixed, NODES, 6), floats(fixed, WEIGHTS)
         arcs = nodes, integers(fixed, SLOTS), weights, rows(fixed, CHUNKS, 2), integers(fixed, TOPS)
-        places, g, far = up(*arcs, points, loads)
-
-        order, shares = work(fixed, SAMPLE_FAR if sampled else FAR_WORK)
-        begins, partners = integers(fixed, FAR_BEGINS), integers(fixed, FAR)
-        for share in prange(shares.size - 1):
-            for k in range(shares[share], shares[share + 1]):
-                a = order[k]
-                others = partners[begins[a] : begins[a + 1]]
-                _far_from(blob, planar, nodes, a, others, places, g, e2, far)
-        down(*arcs, far)
-
-        order, shares = work(fixed, SAMPLE_NEAR if sampled else NEAR_WORK)
-        begins, partners = integers(fixed, NEAR_BEGINS), integers(fixed, NEAR)
-        for share in prange(shares.size - 1):
-            for k in range(shares[share], shares[share + 1]):
-                a = order[k]
-                others = partners[begins[a] : begins[a + 1]]
-                _near(blob, planar, nodes, a, others, points, loads, weights, far, e2, scale, out)
+        places, shared, far = up(*arcs, points, loads)
+        for near in range(2):
+            # First all proxies act on proxies; then all points on points, and the far adds to them.
+            if near:
+                down(*arcs, scale, far, out)
+                at, g, to, first, count, factor = points, loads, out, LO, COUNT, scale
+                order, shares = work(fixed, SAMPLE_NEAR if sampled else NEAR_WORK)
+                begins, partners = integers(fixed, NEAR_BEGINS), integers(fixed, NEAR)
+            else:
+                at, g, to, first, count, factor = places, shared, far, START, PROXIES, 1.0
+                order, shares = work(fixed, SAMPLE_FAR if sampled else FAR_WORK)
+                begins, partners = integers(fixed, FAR_BEGINS), integers(fixed, FAR)
+            for share in prange(shares.size - 1):
+                for k in range(shares[share], shares[share + 1]):
+                    a = order[k]
+                    others = partners[begins[a] : begins[a + 1]]
+                    _act(blob, planar, nodes, a, others, first, count, at, g, e2, factor, to)
 
     return fast_sum
 
@@ -110,32 +99,32 @@ def _fast_sum(blob, planar):
 def _group_sum(blob, angular):
     """Make the sum of a blob at targets in groups, with or without w."""
 
-    @parallel_kernel
+    @threaded_kernel
     def group_sum(fixed, targets, points, loads, sampled, out):
         e2 = fixed[EPSILON] * fixed[EPSILON]
         scale = 1.0 / (EIGHT_PI * fixed[VISCOSITY])
         nodes, weights = rows(fixed, NODES, 6), floats(fixed, WEIGHTS)
         arcs = nodes, integers(fixed, SLOTS), weights, rows(fixed, CHUNKS, 2), integers(fixed, TOPS)
         places, shared, _ = up(*arcs, points, loads)
-
-        order, begins = integers(fixed, TARGETS), integers(fixed, GROUPS)
+        order, members = integers(fixed, TARGETS), integers(fixed, GROUPS)
         far_begins, far = integers(fixed, FAR_BEGINS), integers(fixed, FAR)
         near_begins, near = integers(fixed, NEAR_BEGINS), integers(fixed, NEAR)
         groups, shares = work(fixed, SAMPLE_NEAR if sampled else NEAR_WORK)
         for share in prange(shares.size - 1):
             for k in range(shares[share], shares[share + 1]):
                 a = groups[k]
-                others = far[far_begins[a] : far_begins[a + 1]]
-                sources, g = gathered(nodes, others, START, PROXIES, places, shared)
-                others = near[near_begins[a] : near_begins[a + 1]]
-                more, h = gathered(nodes, others, LO, COUNT, points, loads)
-                for t in range(begins[a], begins[a + 1]):
+                afar = far[far_begins[a] : far_begins[a + 1]]
+                close = near[near_begins[a] : near_begins[a + 1]]
+                count = _total(nodes, afar, PROXIES) + _total(nodes, close, COUNT)
+                sources, g = room_for(count)
+                end = _gather(nodes, afar, START, PROXIES, places, shared, sources, g, 0)
+                _gather(nodes, close, LO, COUNT, points, loads, sources, g, end)
+                for t in range(members[a], members[a + 1]):
                     i = order[t]
                     x, y, z = targets[0, i], targets[1, i], targets[2, i]
                     six = add_up(blob, False, angular, x, y, z, sources, g, e2)
-                    rest = add_up(blob, False, angular, x, y, z, more, h, e2)
                     for c in range(out.shape[0]):
-                        out[c, i] += scale * (six[c] + rest[c])
+                        out[c, i] += scale * six[c]
 
     return group_sum
 
