@@ -32,12 +32,12 @@ def describe_sums(case, scene) -> list[str]:
         tables = fast.count(position)
         seconds = _seconds_a_pair(fast, position)
     exact, quick = seconds * points**2, seconds * OVERHEAD * fast.pairs
-    pays = OVERHEAD * fast.pairs / points
+    pays = float(f"{OVERHEAD * fast.pairs / points:.1g}")
     kind = "fast" if asked else "exact"
     return [
         f"sums: {kind}; an evaluation takes about {exact:.2g} s by exact sums ({points**2:.2g} "
         f"pairs), {quick:.2g} s by fast ones of accuracy {accuracy:g} ({fast.pairs:.2g} pairs, "
-        f"{tables.nbytes / MEGABYTE:.2g} MB of lists), which pay from about {pays:.1g} points on"
+        f"{tables.nbytes / MEGABYTE:.2g} MB of lists), which pay from about {pays:g} points on"
     ]
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rodsim.compiled.parts import FLOW, FORCE
+from rodsim.compiled.parts import FLOW, FORCE, TRACERS
 from rodsim.scene.evaluation import Evaluation
 from rodsim.scene.state import Scene, State
 
@@ -13,7 +13,9 @@ class Observer:
     def __init__(self, scene: Scene):
         self.scene = scene
         self._forces = Evaluation(scene, scene.parts.of(FORCE))
-        self._flows = Evaluation(scene, scene.parts.of(FLOW))
+        # What parts say of their preparation they can say only of a state they have prepared for.
+        sides = (FLOW, TRACERS) if any(part.prepare for part in scene.parts) else (FLOW,)
+        self._flows = Evaluation(scene, scene.parts.of(*sides))
 
     def __call__(self, state: State, rates: np.ndarray | None = None) -> tuple[dict, dict]:
         """Return fields and observables.

@@ -1,5 +1,7 @@
 """Fast sums as users meet them: refused, warned of, told, resumed with the same bits."""
 
+import csv
+
 import numpy as np
 import pytest
 from contents import differences
@@ -88,7 +90,7 @@ def test_an_accuracy_that_limits_the_run_is_warned_of(tmp_path):
     assert make(tmp_path, SCENE).warnings == ()
     (warning,) = make(tmp_path, SCENE, ["fluid.sums.accuracy=2e-5"]).warnings
     assert str(warning).endswith(
-        "fluid.sums.accuracy = 2e-5: is more than a tenth of time.tolerance = 0.0001, and may be "
+        "fluid.sums.accuracy = 2e-05: is more than a tenth of time.tolerance = 0.0001, and may be "
         "what limits the run: use 1e-05 or less"
     )
     fixed = ["time.integrator=euler", "time.step=1e-6", "fluid.sums.accuracy=2e-3"]
@@ -141,3 +143,20 @@ def test_the_energy_of_a_smooth_rod_near_rest_never_rises(accuracy):
         energies.append(sum(seen[f"{name}_energy"].sum() for name in ENERGIES))
     assert energies[-1] < 0.9 * energies[0]
     assert (np.diff(energies) < 0.0).all()
+
+
+@pytest.mark.compiled
+@pytest.mark.long
+def test_converge_tells_what_the_accuracy_costs_in_error(tmp_path):
+    (tmp_path / "case.yaml").write_text(SCENE)
+    where = str(tmp_path / "report")
+    short = ("--set", "time.end=1e-3", "--set", "tracers=null")
+    done = call("converge", str(tmp_path / "case.yaml"), "--in", "accuracy", "-o", where, *short)
+    assert done.exit_code == 0, done.stderr
+    with open(f"{where}.csv", newline="") as stream:
+        rows = [r for r in csv.DictReader(stream) if r["section"] == "accuracy"]
+    errors = [float(row["rms_error"]) for row in rows[:-1]]
+    assert [float(row["value"]) for row in rows] == [10.0**-k for k in range(2, 9)] + [0.0]
+    # Seven decades of accuracy; each is better than asked by a factor of its own.
+    assert errors[-1] < 1e-4 * errors[0]
+    assert rows[-1]["rms_error"] == ""
