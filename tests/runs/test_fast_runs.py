@@ -125,6 +125,30 @@ def smooth_coil(accuracy):
 
 
 @pytest.mark.compiled
+@pytest.mark.parametrize("accuracy", [1e-2, 1e-3])
+def test_no_mode_of_a_rod_at_rest_grows(accuracy):
+    """Eigenvalues of the whole Jacobian; without the mobility that is added the largest is 1e-3."""
+    scene = smooth_coil(accuracy)
+    del scene["rods"]["coil"]["perturb"], scene["time"]
+    scene["rods"]["coil"]["shape"] |= {"radius": 1.5, "pitch": 2.0, "points": 90, "length": 9}
+    _, system = system_from(
+        scene | {"fluid": scene["fluid"] | {"epsilon": 0.7}, "time": {"end": 1}}
+    )
+    rest, n, step = system.scene.initial, system.rod_size, 1e-6
+    jacobian = np.empty((n, n))
+    for k in range(n):
+        rates = []
+        for sign in (step, -step):
+            y = system.zeros()
+            y[k] = sign / system.weights[k]
+            rates.append(system.rate(0.0, rest, y, system.zeros()))
+        jacobian[:, k] = system.weights * (rates[0] - rates[1]) / (2 * step)
+    values = np.linalg.eigvals(jacobian)
+    # Rounding over the step of the difference: 1e-16/1e-6, times the condition of the vectors.
+    assert values.real.max() < 1e-6 * abs(values).max()
+
+
+@pytest.mark.compiled
 @pytest.mark.long
 @pytest.mark.parametrize("accuracy", [1e-3, 1e-5])
 def test_the_energy_of_a_smooth_rod_near_rest_never_rises(accuracy):

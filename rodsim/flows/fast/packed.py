@@ -1,14 +1,15 @@
 """All tables of a fast sum as one array of numbers, as a part takes them (``Part.fixed``).
 
-First the numbers epsilon, viscosity and height of the wall, then where each table begins and how
-many entries it has, then the tables. Those of integers have two in the room of one float64.
+First the numbers epsilon, viscosity and what a force and a torque add at their own point, then
+where each table begins and how many entries it has, then the tables. Those of integers have two in
+the room of one float64.
 """
 
 import numpy as np
 
 from rodsim.compiled.flags import unsigned
 
-EPSILON, VISCOSITY, WALL, HEAD = range(4)
+EPSILON, VISCOSITY, OWN_FORCE, OWN_TORQUE, HEAD = range(5)
 (
     NODES, SLOTS, WEIGHTS, CHUNKS, TOPS,  # the arcs, see Arcs
     FAR_BEGINS, FAR, NEAR_BEGINS, NEAR,  # who is far from, or near to, each arc or group of targets

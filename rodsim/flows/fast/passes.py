@@ -98,6 +98,15 @@ def down(nodes, slots, weights, chunks, tops, scale, velocities, out):
         _down(chunks[c, 0], chunks[c, 1], *arcs, scale, velocities, out)
 
 
+@kernel(f"void({MAT}, float64, float64, {MAT})")
+def add_own(loads, own_force, own_torque, out):
+    """Add to each point so much of its own force, and of its own torque."""
+    for c in range(6):
+        share = own_force if c < 3 else own_torque
+        for k in range(np.uint64(loads.shape[1])):
+            out[c, k] += share * loads[c, k]
+
+
 LANES = 8  # sources come in multiples of it, the rest without loads: what is left over is slow
 
 

@@ -22,6 +22,8 @@ from rodsim.flows.fast.packed import (
     NEAR_BEGINS,
     NEAR_WORK,
     NODES,
+    OWN_FORCE,
+    OWN_TORQUE,
     SAMPLE_FAR,
     SAMPLE_NEAR,
     SLOTS,
@@ -34,7 +36,7 @@ from rodsim.flows.fast.packed import (
     rows,
     work,
 )
-from rodsim.flows.fast.passes import copy_sources, down, room_for, up
+from rodsim.flows.fast.passes import add_own, copy_sources, down, room_for, up
 from rodsim.flows.free import EIGHT_PI, add_up
 
 
@@ -80,6 +82,7 @@ def _fast_sum(blob, planar):
             # First all proxies act on proxies; then all points on points, and the far adds to them.
             if near:
                 down(*arcs, scale, far, out)
+                add_own(loads, fixed[OWN_FORCE], fixed[OWN_TORQUE], out)
                 at, g, to, first, count, factor = points, loads, out, LO, COUNT, scale
                 order, shares = work(fixed, SAMPLE_NEAR if sampled else NEAR_WORK)
                 begins, partners = integers(fixed, NEAR_BEGINS), integers(fixed, NEAR)
