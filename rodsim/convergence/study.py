@@ -121,6 +121,9 @@ class Study:
             words = f"the case's own epsilon, {self.scene.epsilon:.6g}"
             found = rows.epsilon_rows(case, rate, self.scene.epsilon)
             plan.append((Section("epsilon", words), [own, *found]))
+        if "accuracy" in self.axes:
+            words = "exact sums, with the same steps"
+            plan.append((Section("accuracy", words), rows.accuracy_rows(case, rate)))
         return plan
 
     def _need_formulas(self):
@@ -137,11 +140,11 @@ class Study:
         if not isinstance(reference, Outcome):
             raise UsageError(f"{section.axis}: the reference ({section.reference}) is {reference}")
         self.sections.append(section)
-        if section.axis == "points":
+        if section.axis in ("points", "accuracy"):
             others = [*others, first]
         for row in others:
             result = self._result(row, first, reference)
-            if section.own is None and section.axis != "epsilon" and result.errors:
+            if section.own is None and section.axis in ("time", "points") and result.errors:
                 section.own = _own(section, result.errors)
             if result.outcome and row is not first and self._is_twin(row):
                 section.rounding = self._rounding(row, result.outcome)

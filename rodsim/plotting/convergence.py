@@ -6,17 +6,19 @@ from rodsim.convergence.report import fitted_order
 from rodsim.plotting import style
 
 MARKS = {"rkc": ("o", "#0b4f8a"), "euler": ("s", "#d1660f"), "rk4": ("^", "#3a7d2c")}
-SPACE = {"points": ("D", "#8a3b7a"), "epsilon": ("v", "0.45")}
+SPACE = {"points": ("D", "#8a3b7a"), "epsilon": ("v", "0.45"), "accuracy": ("p", "#a08000")}
 SIZES = {
     "time": "mean step / run",
     "points": "spacing / length",
     "epsilon": "epsilon / the case's own",
+    "accuracy": "accuracy of the sums",
 }
-DASHES = {"time": "-", "points": "--", "epsilon": ":"}
+DASHES = {"time": "-", "points": "--", "epsilon": ":", "accuracy": "-."}
 TITLES = {
     "time": "tolerance or step",
     "points": "points at fixed epsilon",
     "epsilon": "epsilon (sensitivity)",
+    "accuracy": "accuracy of the sums",
 }
 
 
@@ -78,13 +80,16 @@ def _by_method(section):
 def _relative_size(study, section, result):
     if section.axis == "epsilon":
         return result.row.value / study.scene.epsilon
+    if section.axis == "accuracy":
+        return result.row.value
     if section.axis == "points":
         return 1.0 / result.outcome.scene.rods.segments.sum()
     return 1.0 / result.outcome.steps
 
 
 def _what(section):
-    return {"time": "mean step", "points": "spacing", "epsilon": "epsilon"}[section.axis]
+    names = {"time": "mean step", "points": "spacing", "epsilon": "epsilon", "accuracy": "accuracy"}
+    return names[section.axis]
 
 
 def _finish(axis):
