@@ -15,6 +15,7 @@ from pydantic import Field
 from rodsim.case.fields import Model
 from rodsim.compiled.parts import FLOW, TRACERS, Part
 from rodsim.flows.fluid import pressure_of
+from rodsim.errors import CaseError
 from rodsim.registry import Kind
 
 HOME = "rodsim.flows.fast.sums"
@@ -47,6 +48,9 @@ class Sums(Model):
 def _build(case, scene) -> list[Part]:
     if case.fluid.sums is None:
         return []
+    if scene.nodes > scene.rods.points:
+        reason = "there is no fast sum with bodies and wound hooks: leave out sums"
+        raise CaseError([case.source.problem(("fluid", "sums"), reason)])
     blob = scene.blob.removeprefix("algebraic")
     kind = "planar" if scene.planar else "spatial"
     rods, tracers = _Rods(scene, case.fluid.sums), _Tracers(scene, case.fluid.sums)
@@ -107,8 +111,6 @@ def _check(case, rod_names) -> Iterator[tuple]:
     fluid = case.fluid
     if fluid is not None and fluid.sums is not None and fluid.wall is not None:
         yield ("fluid", "sums"), "there is no fast sum beside a wall: leave out sums, or wall"
-    if fluid is not None and fluid.sums is not None and case.bodies:
-        yield ("fluid", "sums"), "there is no fast sum with bodies: leave out sums, or bodies"
 
 
 def _doubt(case) -> Iterator[tuple]:
