@@ -14,8 +14,8 @@ from pydantic import Field
 
 from rodsim.case.fields import Model
 from rodsim.compiled.parts import FLOW, TRACERS, Part
-from rodsim.flows.fluid import pressure_of
 from rodsim.errors import CaseError
+from rodsim.flows.fluid import pressure_of
 from rodsim.registry import Kind
 
 HOME = "rodsim.flows.fast.sums"
