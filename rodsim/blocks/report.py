@@ -82,6 +82,8 @@ class Report:
         _, forces, torques, motor_torques, motor_rates = np.split(gauges, sizes)
         return forces.reshape(-1, 3), torques.reshape(-1, 3), motor_torques, motor_rates
 
-    def pressure(self, points, sources, loads, t):
-        """Return the pressure (T,) of the surfaces; computed where their loads are known."""
-        return np.zeros(points.shape[1])
+    def pressure(self, points, sources, loads, t, left):
+        """Return the pressure (T,) of the surfaces at points (3, T)."""
+        from rodsim.blocks.skins import surface_pressure
+
+        return surface_pressure(self.scene, points, left)

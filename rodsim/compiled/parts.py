@@ -50,8 +50,8 @@ class Part:
     of the part, unless that is kept in an energy of its own (``potential``).
     observe : called with (state, row, scene), returns observables by name.
     series : those beyond the ones of every scene, (name, shape, dimension) each.
-    pressure : called with (points (3, T), sources (3, N), loads (6, N), t), returns its share of
-    the pressure (T,).
+    pressure : called with (points (3, T), sources (3, N), loads (6, N), t, left), returns its share
+    of the pressure (T,); left: its fixed numbers with what the evaluation of the loads left there.
     sums : sums that it calls, ``module:name`` each, whose addresses are put into the first places
     of ``fixed`` (an address is a whole number that float64 holds exactly).
     gauges : what it leaves in the last places of ``fixed``. Parts of a scene that

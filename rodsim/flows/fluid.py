@@ -37,7 +37,7 @@ def fluid_parts(scene) -> list[Part]:
 
 
 def _pressure(scene, home):
-    def pressure(points, sources, loads, t):
+    def pressure(points, sources, loads, t, left):
         """Return the pressure (T,) at points (3, T), eq. (62); NaN below a wall."""
         from rodsim.flows.blobs import BLOBS
 
