@@ -72,7 +72,7 @@ def _room(plan):
     count += 2 * sum(np.asarray(value).nbytes for value in plan.checkpoint.values())
     kept = [*plan.arrays.values(), *plan.bodies.values()]
     count += sum(np.asarray(array).nbytes for arrays in kept for array in arrays.values())
-    count += ROD_BYTES * len(plan.bodies)
+    count += ROD_BYTES * len(plan.bodies) + 2 * 8 * 4 * len(plan.triangles)  # cells of the view
     count += POINT_BYTES * (plan.points + plan.tracers) + ROD_BYTES * len(plan.rods)
     return count + FILE_BYTES
 

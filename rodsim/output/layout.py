@@ -24,6 +24,7 @@ TRAJECTORY = "particles/trajectory"
 TRACERS = "particles/tracers/position"
 OBSERVABLES = "observables"
 BODIES, ROTORS = "particles/bodies", "particles/rotors"
+SURFACES = "particles/surfaces/position"  # of all bodies, one after another: (T, S, 3)
 CLOCK = f"{TRAJECTORY}/position"  # where time and step live; every other group links to them
 
 TIME, LENGTH, FORCE, ENERGY = (0, 0, 1), (0, 1, 0), (1, 1, -2), (1, 2, -2)
@@ -128,6 +129,15 @@ class Plan:
         """Number N of points of all rods."""
         return self.rods.points
 
+    @property
+    def triangles(self) -> list[list[int]]:
+        """Return the corners of all faces of bodies, points of the surfaces counted after N."""
+        faces, first = [], self.points
+        for kept in self.bodies.values():
+            faces += (kept["triangles"] + first).tolist()
+            first += len(kept["skin"])
+        return faces
+
     def fields_stored(self) -> Iterator[Series]:
         """Yield what is stored of every point and tracer; the position always is."""
         for name, dimension in FIELDS.items():
@@ -144,6 +154,10 @@ class Plan:
                 yield Series(name, f"{OBSERVABLES}/{name}", (len(self.rods),), dimension)
         for name, dimension in BALANCES.items():
             yield Series(name, f"{OBSERVABLES}/{name}", (3,), dimension)
+        yield from self.extra_stored()
+
+    def extra_stored(self) -> Iterator[Series]:
+        """Yield what only some scenes have, in the order of ``extra``."""
         for name, shape, dimension, *where in self.extra:
             yield Series(name, where[0] if where else f"{OBSERVABLES}/{name}", shape, dimension)
 

@@ -85,6 +85,16 @@ class Trajectory:
         shape |= dict.fromkeys(layout.BALANCES, (3,))
         return self._values(f"{OBSERVABLES}/{name}", shape.get(name), frames)
 
+    def stores(self, where: str) -> bool:
+        """Tell whether the file has a series at a place such as ``observables/power``."""
+        group, _, name = where.rpartition("/")
+        above, _, last = group.rpartition("/")
+        return last in self._file.names(above or "/") and name in self._file.names(group)
+
+    def values(self, series: layout.Series, frames=slice(None)) -> np.ndarray:
+        """Return a series by its record, wherever in the file it is."""
+        return self._values(series.where, series.shape, frames)
+
     @property
     def bodies(self) -> list[str]:
         """Names of the rigid bodies, in order."""
@@ -107,6 +117,21 @@ class Trajectory:
         shape = (len(self.bodies), width)
         return self._values(f"{layout.BODIES}/{name}", shape, frames)
 
+    def surfaces(self, frames=slice(None)) -> np.ndarray:
+        """Return the points (T, S, 3) of the surfaces of all bodies; S is 0 without bodies."""
+        if not self.stores(layout.SURFACES):
+            return np.zeros((self.frames, 0, 3))[frames]
+        return self._values(layout.SURFACES, (None, 3), frames)
+
+    @property
+    def triangles(self) -> np.ndarray:
+        """Corners (F, 3) of the triangles between the points of ``surfaces``."""
+        found, first = [np.zeros((0, 3), dtype=np.int64)], 0
+        for kept in map(self.body, self.bodies):
+            found.append(kept["triangles"] + first)
+            first += len(kept["skin"])
+        return np.concatenate(found)
+
     def of_rotors(self, frames=slice(None)) -> np.ndarray:
         """Return position and orientation (T, K, 7) of the rotors of hooks; K is 0 without."""
         if "rotors" not in self._file.names("particles"):
@@ -117,7 +142,7 @@ class Trajectory:
         """Return what never changes of a body: points, normals, resistance, ... by name."""
         where = f"bodies/{name}"
         names = self._file.names(where)
-        return {key: self._file.array(f"{where}/{key}", "f", None) for key in names}
+        return {key: self._file.array(f"{where}/{key}", "fi", None) for key in names}
 
     def surface(self, body: str) -> np.ndarray | None:
         """Return the points (n, 3) of a body as its file had them, None where there was none."""

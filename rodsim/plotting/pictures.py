@@ -34,6 +34,13 @@ def thickness(run) -> float:
     return THICKNESS * max(rod.spacing * rod.count for rod in run.rods)
 
 
+def surfaces_of(run, frames):
+    """Return the surfaces of bodies (F, S, 3) in some frames and their triangles, or None, None."""
+    if not run.bodies:
+        return None, None
+    return np.array([run.surfaces(frame) for frame in frames]), run.triangles
+
+
 def plot_shapes(path, out, *, frames, at, view, kind, colour, overlay):
     """Draw the shapes of a run: ``frames`` of them, or those nearest to the times ``at``."""
     with open_trajectory(path) as run:
@@ -107,7 +114,9 @@ def _frames(run, wanted, at):
 def _look(run, chosen, view, kind, colour):
     """Return the camera, the shapes and the key of the colours for some frames."""
     position = np.array([run.read("position", frame) for frame in chosen])
-    camera = make_camera(view, position, upright=run.wall is not None)
+    surfaces, triangles = surfaces_of(run, chosen)
+    seen = position if surfaces is None else np.concatenate([position, surfaces], axis=1)
+    camera = make_camera(view, seen, upright=run.wall is not None)
     kind = kind or ("line" if camera.flat or "director" not in run.fields else "tube")
     if kind not in KINDS:
         raise UsageError(f"style must be one of {', '.join(KINDS)}, not {kind!r}")
@@ -120,7 +129,7 @@ def _look(run, chosen, view, kind, colour):
         tracers = np.array([run.read("tracers", frame) for frame in chosen])
     shapes = Shapes(
         run.time[chosen], position, director, run.rods, colours, tracers, run.units,
-        thickness(run), kind, run.wall,
+        thickness(run), kind, run.wall, surfaces, triangles,
     )  # fmt: skip
     return camera, shapes, key
 

@@ -23,7 +23,8 @@ class Shapes:
 
     colours : rgba for each frame and rod, (4,) or (S, 4). tracers : (T, P, 3), P may be 0.
     units : names of the units of ``length`` and ``time``. size : diameter or width of the rods.
-    wall : height of a wall, or None.
+    wall : height of a wall, or None. surfaces : of bodies, (T, S, 3), and triangles (F, 3) between
+    their points; or None.
     """
 
     time: np.ndarray
@@ -36,6 +37,8 @@ class Shapes:
     size: float
     kind: str
     wall: float | None = None
+    surfaces: np.ndarray | None = None
+    triangles: np.ndarray | None = None
 
     def draw(self, axis, camera: Camera, frame: int):
         """Draw one frame on an axis that has its limits; return the axis."""
@@ -44,7 +47,8 @@ class Shapes:
             draw_tracers(axis, camera, self.tracers[frame])
         director = None if self.director is None else self.director[frame]
         shape = self.position[frame], director, self.size, self.colours[frame], self.kind
-        return draw_rods(axis, camera, self.rods, *shape)
+        bodies = None if self.surfaces is None else (self.surfaces[frame], self.triangles)
+        return draw_rods(axis, camera, self.rods, *shape, bodies)
 
     def bounds(self, camera: Camera) -> np.ndarray:
         """Return [[left, bottom], [right, top]] of all frames, with a margin."""
@@ -57,7 +61,10 @@ class Shapes:
         return np.array([low - space, high + space])
 
     def _points(self):
-        return np.concatenate([self.position, self.tracers], axis=1).reshape(-1, 3)
+        shown = [self.position, self.tracers]
+        if self.surfaces is not None:
+            shown.append(self.surfaces)
+        return np.concatenate(shown, axis=1).reshape(-1, 3)
 
     def stamp(self, frame: int) -> str:
         """Return the time of a frame with its unit."""
