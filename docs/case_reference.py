@@ -51,6 +51,7 @@ SECTIONS = {
     "Rotate": "rods.NAME.shape.rotate",
     "Tether": "tethers.NAME",
     "OnRod": "an end of a tether on a rod",
+    "OnBody": "an end of a tether on a body",
     "Tube": "tracers.NAME as a mapping",
     "Time": "time",
     "Output": "output",

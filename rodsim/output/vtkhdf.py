@@ -1,9 +1,10 @@
 """The group ``/VTKHDF``: a view that lets ParaView open the output file itself, without a copy.
 
 Format: VTKHDF 2.0, PolyData with steps. Points and point data are virtual datasets over the
-trajectory; the lines, one per rod, and the triangles of bodies are shared by all steps.
-``NSteps`` says how many frames there are. VTK's reader copies all of ``Steps/Values`` into room for ``NSteps``: values beyond that crash
-it, values missing are read as time 0. So each frame raises ``NSteps`` first, then adds its time.
+trajectory; the lines, one per rod, and the triangles of bodies are shared by all steps. ``NSteps``
+says how many frames there are. VTK's reader copies all of ``Steps/Values`` into room for
+``NSteps``: values beyond that crash it, values missing are read as time 0. So each frame raises
+``NSteps`` first, then adds its time.
 """
 
 from __future__ import annotations

@@ -8,11 +8,13 @@ from click.testing import CliRunner
 from contents import differences
 
 from rodsim import load_case, open_trajectory, resume, simulate
+from rodsim.blocks.hull import triangles as triangles_of
 from rodsim.blocks.surface import surface_of
 from rodsim.blocks.words import Spherocylinder
 from rodsim.cli import main
 from rodsim.output.verify import verify
 from rodsim.scene.build import build_scene
+from rodsim.scene.quaternions import to_matrix
 
 MODULI = "moduli: {bending: 3.5e-3, twisting: 3.3e-3, shear: 0.8, stretch: 0.9}"
 END = "time: {end: 1.1e-3, tolerance: 1.0e-4}\noutput: {interval: 2.5e-4}\n"
@@ -137,3 +139,97 @@ time: {{end: 1.0e-4}}
     scene = build_scene(make(tmp_path, text))
     assert np.array_equal(scene.initial.position.T, end)
     assert np.array_equal(scene.initial.director.transpose(2, 0, 1), triads)
+
+
+@pytest.fixture(scope="module")
+def towed(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("towed")
+    simulate(make(folder, TOWED), folder / "out.h5")
+    return folder / "out.h5"
+
+
+def test_surfaces_move_with_their_body(towed):
+    with open_trajectory(towed) as run:
+        surfaces, triangles = run.surfaces(), run.triangles
+        places, turns = (run.of_bodies(name)[:, 0] for name in ("position", "orientation"))
+        skin = run.body("cell")["skin"]
+    for points, place, q in zip(surfaces, places, turns, strict=True):
+        assert points == pytest.approx(place + skin @ to_matrix(q).T, abs=1e-12)
+    level = (skin[:, :2] ** 2).sum(axis=1) / 0.6**2 + skin[:, 2] ** 2 / 1.1**2
+    assert level == pytest.approx(np.ones(20), abs=1e-5)  # its area is interpolated
+    assert 0.1 < 2.0 * np.arccos(abs(turns[-1, 0])) < 0.5  # it turns by 0.3 rad in all
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    there, back = ({tuple(e) for e in pairs} for pairs in (edges, edges[:, ::-1]))
+    assert there == back  # closed: each edge once in each direction
+    assert len(there) == len(edges)
+    assert len(triangles) == 2 * len(skin) - 4
+    volume = np.linalg.det(skin[triangles]).sum() / 6.0  # positive: seen from outside
+    exact = 4.0 / 3.0 * np.pi * 1.1 * 0.6**2
+    assert 0.7 * exact < volume < exact  # of 20 points; the hull lies inside
+
+
+def test_the_hull_of_a_body_of_the_default_points_is_nearly_all_of_it():
+    shape = Spherocylinder(kind="spherocylinder", length=2.4, radius=0.5)
+    surface = surface_of(shape, "algebraic7")
+    corners = surface.skin.T[triangles_of(surface)]
+    exact = np.pi * 0.25 * 1.4 + 4.0 / 3.0 * np.pi * 0.125
+    assert 0.9 * exact < np.linalg.det(corners).sum() / 6.0 < exact
+
+
+def test_paraview_sees_the_surface(towed, tmp_path):
+    pytest.importorskip("vtkmodules.vtkIOHDF")
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOHDF import vtkHDFReader
+
+    exported = tmp_path / "out.vtkhdf"
+    assert CliRunner().invoke(main, ["export", str(towed), "-o", str(exported)]).exit_code == 0
+    with open_trajectory(towed) as run:
+        position, surfaces, triangles = run.position, run.surfaces(), run.triangles
+    for path in (towed, exported):
+        reader = vtkHDFReader()
+        reader.SetFileName(str(path))
+        reader.UpdateInformation()
+        assert reader.GetNumberOfSteps() == len(position)
+        for step in range(len(position)):
+            reader.SetStep(step)
+            reader.Update()
+            data = reader.GetOutputDataObject(0)
+            seen = vtk_to_numpy(data.GetPoints().GetData())
+            assert np.array_equal(seen, np.vstack([position[step], surfaces[step]]))
+            corners = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+            assert np.array_equal(corners, triangles + len(position[step]))
+            first = vtk_to_numpy(data.GetPointData().GetArray("D1"))
+            assert np.isfinite(first[: position.shape[1]]).all()
+            assert np.isnan(first[position.shape[1] :]).all()
+
+
+@pytest.mark.parametrize("kind", ["tube", "line"])
+def test_bodies_are_drawn_where_they_are(towed, kind):
+    pytest.importorskip("matplotlib")
+    from rodsim.plotting import pictures, style
+    from rodsim.plotting.shapes import set_stage
+
+    with open_trajectory(towed) as run:
+        camera, shapes, _ = pictures._look(run, [0, run.frames - 1], "yz", kind, "time")
+        surface = run.surfaces(run.frames - 1)
+    axis = style.new_figure(3.0, 3.0).add_subplot()
+    set_stage(axis, camera, shapes.bounds(camera))
+    shapes.draw(axis, camera, 1)
+    paths = [c.get_paths() for c in axis.collections]
+    corners = np.concatenate([p.vertices for several in paths for p in several])
+    seen = camera.project(surface)[:, :2]
+    assert corners.min(axis=0) == pytest.approx(seen.min(axis=0), abs=0.3)
+    drawn = {tuple(corner) for corner in corners.round(9)}
+    assert sum(tuple(corner) in drawn for corner in seen.round(9)) > len(seen) / 3  # those in front
+    low, high = shapes.bounds(camera)
+    assert (low < seen.min(axis=0)).all()
+    assert (high > seen.max(axis=0)).all()
+
+
+def test_movies_and_flow_pictures_of_bodies_are_written(towed, tmp_path):
+    pytest.importorskip("matplotlib")
+    grid = "0.1,-1:2:9,-1:3:9"
+    for words in (["plot", towed, "-n", "2", "-o", tmp_path / "shapes.gif"],
+                  ["flow", towed, "--grid", grid, "-o", tmp_path / "flow.png"]):  # fmt: skip
+        done = CliRunner().invoke(main, [str(word) for word in words])
+        assert done.exit_code == 0, done.output
