@@ -208,7 +208,7 @@ def _build(case, scene) -> list[Part]:
         Part("held", PLACE, "rodsim.blocks.frames:place_members", **shared),
         Part("held", RELEASE, "rodsim.blocks.hold:release", **shared),
         Part("held", HOLD, "rodsim.blocks.hold:hold", **shared, external=report.driven, sums=sums,
-             gauges=report.gauges, report=report, series=report.series),
+             gauges=report.gauges, report=report, series=report.series, labels=report.labels),
     ]  # fmt: skip
     if scene.bodies:
         parts.append(

@@ -52,6 +52,18 @@ class Report:
             found.append(("hook_energy", (len(self.hooks),), ENERGY))
         return tuple(found)
 
+    @property
+    def labels(self) -> dict[str, tuple[str, ...]]:
+        """Whose the rows of observables are: bodies and ends of rods such as ``tail.start``."""
+        held = tuple(self.blocks[b].name for b in self.held)
+        motors, hooks = (
+            tuple(self.members[q].name for q in chosen) for chosen in (self.motors, self.hooks)
+        )
+        anchors = ("force", "torque", "impulse", "angular_impulse")
+        found = {f"anchor_{name}": held for name in anchors if held}
+        found |= {f"motor_{name}": motors for name in ("torque", "rate", "angle") if motors}
+        return found | ({"hook_energy": hooks} if hooks else {})
+
     def __call__(self, fixed, rates, state) -> tuple[dict, np.ndarray]:
         """Return observables by name, and the correction of the net force and torque (6,).
 

@@ -11,6 +11,7 @@ from rodsim.commands.groups import (
     describe_rods,
     in_water_units,
 )
+from rodsim.commands.held import describe_held
 from rodsim.errors import FileError
 from rodsim.run.ending import Motion, gap_sentence
 from rodsim.run.recorder import frame_times
@@ -43,6 +44,7 @@ def describe_case(case, refuse=False) -> str:
         f"epsilon {scene.epsilon:.6g} {unit.length} "
         f"= {scene.epsilon / scene.rods.spacing[0]:.4g} spacings"
     )
+    lines += describe_held(case, scene)
     lines += describe_start(scene, system, unit.names)
     if scene.wall is not None:
         lines.append(describe_wall(scene, unit.length))
@@ -153,6 +155,14 @@ def _endings(run):
     return [text for text in sentences if text]
 
 
+def _rows(run):
+    """Yield observables and whose their rows are, where they are not those of the rods."""
+    rods = [rod.name for rod in run.rods]
+    for name in run.observables:
+        if (labels := run.labels(name)) and labels != rods:
+            yield name, labels
+
+
 def _inputs(run) -> list[str]:
     """Return a line for each file the run began from: its digest, and whether it is the same."""
     from rodsim.scene.inputs import look_again, stored_digests
@@ -186,10 +196,14 @@ def describe_output(path) -> str:
         if len(run.rods) > MOST_RODS:
             lines.append(f"and {len(run.rods) - MOST_RODS} more rods")
         lines += _endings(run)
+        for name in run.bodies:
+            kept = run.body(name)
+            lines.append(f"body {name}: {len(kept['points'])} points")
         if run.wall is not None:
             lines.append(f"wall: z = {run.wall:g} {unit['length']}, without slip")
         lines.append(f"fields: {', '.join(run.fields)}")
         lines.append(f"observables: {', '.join(run.observables)}")
+        lines += [f"{name} of {', '.join(labels)}" for name, labels in _rows(run)]
         lines += [
             f"{key}: {value if isinstance(value, str) else format(value, '.6g')}"
             for key, value in run.runtime.items()

@@ -49,7 +49,8 @@ class Part:
     external : it acts from outside, so the ledger is kept: what the fluid dissipates, and the work
     of the part, unless that is kept in an energy of its own (``potential``).
     observe : called with (state, row, scene), returns observables by name.
-    series : those beyond the ones of every scene, (name, shape, dimension) each.
+    series : those beyond the ones of every scene, (name, shape, dimension) each. labels : of those
+    with several rows, and of gauges, by name: whose each row is.
     pressure : called with (points (3, T), sources (3, N), loads (6, N), t, left), returns its share
     of the pressure (T,); left: its fixed numbers with what the evaluation of the loads left there.
     sums : sums that it calls, ``module:name`` each, whose addresses are put into the first places
@@ -71,6 +72,7 @@ class Part:
     potential: bool = False
     observe: Callable | None = None
     series: tuple = ()
+    labels: dict = field(default_factory=dict)
     pressure: Callable | None = None
     sums: tuple[str, ...] = ()
     gauges: tuple[Gauge, ...] = ()

@@ -97,7 +97,7 @@ def _build(case, scene) -> list[Part]:
     kernel = "rodsim.forces.tether_force:apply_tethers"
     return [
         Part("tethers", FORCE, kernel, fixed=fixed, external=True, potential=True,
-             observe=observe, series=series)
+             observe=observe, series=series, labels={"tether_energy": tuple(case.tethers)})
     ]  # fmt: skip
 
 

@@ -170,6 +170,8 @@ def _add_series(file, plan):
         group = file.require_group(series.where)
         value = preallocated(group, "value", (frames, *series.shape), np.nan)
         value.attrs["units"] = unit_text(series.dimension, plan.units)
+        if series.name in plan.labels:
+            value.attrs["rows"] = ", ".join(plan.labels[series.name])
         if series.where != CLOCK:
             group["time"], group["step"] = clock["time"], clock["step"]
 

@@ -108,6 +108,7 @@ class Plan:
     later ones are like: arrays and numbers by name. extra : observables that not every scene has,
     (name, shape, dimension) each, and a place in the file where that is not /observables. bodies :
     what never changes of rigid bodies, arrays and numbers by name, by the name of the body.
+    labels : whose the rows of a series are, by its name.
     arrays : by rod, what its strain twist was made from beside the case's text, and where its held
     ends are at rest, by name.
     """
@@ -123,6 +124,7 @@ class Plan:
     extra: tuple = ()
     arrays: dict = field(default_factory=dict)
     bodies: dict = field(default_factory=dict)
+    labels: dict = field(default_factory=dict)
 
     @property
     def points(self) -> int:

@@ -198,6 +198,17 @@ class Trajectory:
         where = TRACERS if name == "tracers" else f"{group}/{name}"
         return self._file.attribute(f"{where}/value", "units", str)
 
+    def labels(self, name: str) -> list[str]:
+        """Return whose each row of an observable is: rods, bodies, ends such as ``tail.start``.
+
+        Empty where it has no rows, such as a vector of the whole scene.
+        """
+        if name in layout.PER_ROD:
+            return [rod.name for rod in self.rods]
+        where = f"{OBSERVABLES}/{name}/value"
+        rows = self._file.attributes(where).get("rows", "") if name in self.observables else ""
+        return rows.split(", ") if rows else []
+
     def checkpoint(self, frames: int | None = None) -> dict | None:
         """Return the newest whole state of the run, or None if there is none.
 

@@ -75,7 +75,7 @@ def test_flow_outside_a_sphere_is_that_of_stokes(spacings, tolerance):
     assert rms(spin - turn) < 3.0 * tolerance * A * np.linalg.norm(SPIN)
     if spacings:
         found = sources.pressure(CENTRE + r)
-            assert rms(found - pressure) < 0.03 * rms(pressure)
+        assert rms(found - pressure) < 0.03 * rms(pressure)
 
 
 def test_nothing_moves_on_a_wall_under_a_sphere():
