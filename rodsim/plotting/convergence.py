@@ -6,16 +6,18 @@ from rodsim.convergence.report import fitted_order
 from rodsim.plotting import style
 
 MARKS = {"rkc": ("o", "#0b4f8a"), "euler": ("s", "#d1660f"), "rk4": ("^", "#3a7d2c")}
-SPACE = {"points": ("D", "#8a3b7a"), "epsilon": ("v", "0.45")}
+SPACE = {"points": ("D", "#8a3b7a"), "body_points": ("P", "#2a7a7a"), "epsilon": ("v", "0.45")}
 SIZES = {
     "time": "mean step / run",
     "points": "spacing / length",
+    "body_points": "(points of bodies)^(-1/2)",
     "epsilon": "epsilon / the case's own",
 }
-DASHES = {"time": "-", "points": "--", "epsilon": ":"}
+DASHES = {"time": "-", "points": "--", "body_points": "-.", "epsilon": ":"}
 TITLES = {
     "time": "tolerance or step",
     "points": "points at fixed epsilon",
+    "body_points": "points of bodies",
     "epsilon": "epsilon (sensitivity)",
 }
 
@@ -80,11 +82,14 @@ def _relative_size(study, section, result):
         return result.row.value / study.scene.epsilon
     if section.axis == "points":
         return 1.0 / result.outcome.scene.rods.segments.sum()
+    if section.axis == "body_points":
+        return result.row.value**-0.5
     return 1.0 / result.outcome.steps
 
 
 def _what(section):
-    return {"time": "mean step", "points": "spacing", "epsilon": "epsilon"}[section.axis]
+    names = {"time": "mean step", "points": "spacing", "epsilon": "epsilon"}
+    return names.get(section.axis, "spacing of bodies")
 
 
 def _finish(axis):
