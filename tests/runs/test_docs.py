@@ -17,6 +17,7 @@ SLOW = (
     "visualization",
     "data",
     "wall",
+    "bodies",
 )  # minutes where the machine is not quiet; and below, the tutorial
 BLOCK = re.compile(r"(?:<!-- (?P<mark>[\w: ]+) -->\n)?```(?P<kind>\w+)\n(?P<text>.*?)```", re.S)
 LINK = re.compile(r"\]\((?!https?:)([^)]+)\)")
