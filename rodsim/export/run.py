@@ -159,6 +159,10 @@ def _arrays(run, frames):
     if run.bodies:
         arrays["body_name"] = np.array(run.bodies)
         arrays |= {f"body_{name}": run.of_bodies(name, frames) for name in OF_BODIES}
+    rods = [rod.name for rod in run.rods]
+    rows = {name: run.labels(name) for name in run.observables}
+    if rows := {name: labels for name, labels in rows.items() if labels not in ([], rods)}:
+        arrays["rows"] = json.dumps(rows)
     for key in ("name", "first", "count", "closed", "spacing", "moduli"):
         arrays[f"rod_{key}"] = np.array([getattr(rod, key) for rod in run.rods])
     units = {name: run.unit(name) for name in (*run.fields, *run.observables)}

@@ -59,7 +59,16 @@ rods:
       hold: clamped
       move: {{displace: [0.002, "0.003*cos(900*t)", 0], turn: ["0.01 + 0.2*sin(900*t)", 0, 0]}}
 {END}"""
-SCENES = {"swimmer": SWIMMER, "towed": TOWED, "cilium": CILIUM}
+BRIDGE = f"""
+fluid: {{viscosity: 1.3e-6, epsilon: 0.25, wall: {{z: -0.6}}}}
+rods:
+  bridge:
+    shape: {{kind: straight, points: 7, spacing: 0.21, rotate: {{axis: [1, 0, 0], degrees: 90}}}}
+    {MODULI}
+    start: {{hold: clamped, move: {{displace: [0, 0, "0.02*sin(900*t)"]}}}}
+    end: {{hold: hinged}}
+{END}"""
+SCENES = {"swimmer": SWIMMER, "towed": TOWED, "cilium": CILIUM, "bridge": BRIDGE}
 
 
 def make(folder, text, overrides=()):
