@@ -40,6 +40,7 @@ SECTIONS = {
     "Rod": "rods.NAME",
     "Perturb": "rods.NAME.perturb",
     "Moduli": "rods.NAME.moduli",
+    "StrainTables": "rods.NAME.strain_twist as a mapping",
     "StrainTable": "rods.NAME.strain_twist.N as a mapping",
     "Load": "rods.NAME.loads.NAME",
     "Straight": "rods.NAME.shape, kind: straight",

@@ -25,6 +25,7 @@ COMMANDS = (  # as the help lists them
     "sweep",
     "converge",
     "energy",
+    "measure",
     "plot",
     "flow",
     "export",

@@ -51,6 +51,12 @@ class UsageError(RodsimError):
     exit_code = 2
 
 
+class UnknownName(UsageError, KeyError):
+    """A rod or array of a run that there is not, asked for by name."""
+
+    __str__ = Exception.__str__  # not KeyError's, which quotes
+
+
 class DivergedError(RodsimError):
     """The run stopped making sense; the message says where and what to do."""
 

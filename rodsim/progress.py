@@ -1,4 +1,4 @@
-"""Progress on stderr: a bar with time left on a terminal, a plain line now and then otherwise."""
+"""Progress: a bar with time left on a terminal, a line in a notebook, plain lines otherwise."""
 
 import sys
 from time import monotonic
@@ -8,6 +8,7 @@ import click
 from rodsim.text import printable
 
 SECONDS_BETWEEN_LINES = 5.0
+SECONDS_BETWEEN_CHANGES = 0.5
 BAR_STEPS = 1000
 
 
@@ -67,9 +68,37 @@ class Lines(Silent):
         click.echo(f"{self._label}: {fraction:6.1%} {note}, {left:.0f} s left", err=True)
 
 
+class Notebook(Silent):
+    """A line in the output of a notebook's cell, changed in place."""
+
+    def __init__(self, label):
+        self._label, self._handle, self._next = label, None, 0.0
+
+    def update(self, fraction, note=""):
+        """Change the line, twice a second; the last one stays."""
+        from IPython.display import display
+
+        if monotonic() < self._next and fraction < 1.0:
+            return
+        self._next = monotonic() + SECONDS_BETWEEN_CHANGES
+        shown = {"text/plain": f"{self._label}: {fraction:6.1%} {note}"}
+        if self._handle is None:
+            self._handle = display(shown, raw=True, display_id=True)
+        else:
+            self._handle.update(shown, raw=True)
+
+
+def in_notebook() -> bool:
+    """Tell whether this process is the kernel of a notebook."""
+    found = sys.modules.get("IPython")
+    return bool(found) and getattr(found.get_ipython(), "kernel", None) is not None
+
+
 def make_progress(label: str, quiet: bool):
     """Return the progress display that suits stderr."""
     if quiet:
         return Silent()
     label = printable(label)
+    if in_notebook():
+        return Notebook(label)
     return Bar(label) if sys.stderr.isatty() else Lines(label)

@@ -15,7 +15,9 @@ NASTY = (
     "{like: right, repeat: 3}", "{phi: pi}", "{i: 2}", "{k: k}", "{period: sigma, sigma: period}",
     "{radius: 0.1}", "{young: 1e3, radius: 0.2}", "{force: pN}", "{force: pN, mass: g}", "Å",
     "2*points", "600/3", "where(i < 2, 3, 4)", "arctan2(1, 2)", "(" * 200, "1" + "+1" * 300, "i*d",
-    "curve", "natural", "natural_1", "{table: x.csv}", "{kind: curve, path: x.csv}",
+    "{table: x.csv, columns: [s, t, k1, k2, k3]}", "{table: x.csv, period: 1}",
+    "{kind: file, path: x.vertex, rod: 2, spacing: 0.1}", "curve", "natural",
+    "natural_1", "{table: x.csv}", "{kind: curve, path: x.csv}",
     ": :", "# x", "|", ">",
 )  # fmt: skip
 _TOKEN = re.compile(r"[\w.+\-]+|\S")

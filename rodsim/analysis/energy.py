@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -21,12 +21,14 @@ class EnergyTable:
     time; what is stored in the rods, and in tethers where there are any; total, the sum of that;
     kinetic where there is a density; work from outside and dissipated, both since t = 0, where
     anything acts from outside: then total + dissipated - work stays what it was, to O(ds^2).
+    of_rods : the elastic energies of each rod where there are several, ``left.bending``: (T,).
     """
 
     columns: tuple[str, ...]
     unit: str
     time_unit: str
     rows: np.ndarray
+    of_rods: dict[str, np.ndarray] = field(default_factory=dict)
 
     def text(self) -> str:
         """Return the table as aligned text."""
@@ -36,13 +38,15 @@ class EnergyTable:
         return "\n".join(lines)
 
     def write_csv(self, path) -> None:
-        """Write the table with full precision; raises FileError."""
+        """Write the table with full precision, and that of each rod; raises FileError."""
         from rodsim.export.tables import write_csv
 
-        write_csv(path, self._heads(), [[*np.transpose(self.rows)]])
+        columns = [*np.transpose(self.rows), *self.of_rods.values()]
+        write_csv(path, self._heads(), [columns])
 
     def _heads(self):
-        return [f"{c} ({self.time_unit if c == 'time' else self.unit})" for c in self.columns]
+        names = (*self.columns, *self.of_rods)
+        return [f"{c} ({self.time_unit if c == 'time' else self.unit})" for c in names]
 
 
 def energy_table(path, kelvin: float | None = None) -> EnergyTable:
@@ -59,12 +63,23 @@ def energy_table(path, kelvin: float | None = None) -> EnergyTable:
         for column, name in BESIDE.items():
             if name in run.observables:
                 series[column] = _summed(run, name)
+        of_rods = _of_rods(run) if len(run.rods) > 1 else {}
         unit, units = run.unit("bending_energy"), run.units
     rows = np.array([*series.values()]).T
     if kelvin is not None:
-        rows[:, 1:] /= thermal_energy(kelvin, units)
+        thermal = thermal_energy(kelvin, units)
+        rows[:, 1:] /= thermal
+        of_rods = {name: values / thermal for name, values in of_rods.items()}
         unit = f"kT at {kelvin:g} K"
-    return EnergyTable(tuple(series), unit, units["time"], rows)
+    return EnergyTable(tuple(series), unit, units["time"], rows, of_rods)
+
+
+def _of_rods(run):
+    """Return the elastic energies of each rod, and its kinetic one where it is stored."""
+    stored = [(name, f"{name}_energy") for name in (*PARTS, "kinetic")]
+    found = [(name, run.observable(o)) for name, o in stored if o in run.observables]
+    rods = [(k, rod.name) for k, rod in enumerate(run.rods)]
+    return {f"{rod}.{name}": values[:, k] for k, rod in rods for name, values in found}
 
 
 def _stored(run):

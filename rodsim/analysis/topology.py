@@ -54,6 +54,15 @@ def twist(position: np.ndarray, director: np.ndarray, closed: bool = True) -> fl
     return float(np.arctan2(sine, cosine).sum() / (2.0 * np.pi))
 
 
+def link(position: np.ndarray, director: np.ndarray) -> float:
+    """Return Lk = Tw + Wr of a closed rod, position (M, 3), director (M, 3, 3).
+
+    A whole number to rounding, where no more than that is lost in the sums. It changes only where
+    the rod passes through itself, or where its triads turn half-way round between two points.
+    """
+    return twist(position, director) + writhe(position)
+
+
 def _segments(position, closed):
     position = np.asarray(position, float)
     if position.ndim != 2 or position.shape[1] != 3 or len(position) < 3:

@@ -21,15 +21,15 @@ from rodsim.blocks.frames import (
     turned,
     turned_back,
 )
-from rodsim.compiled.flags import call_sum, unsigned
+from rodsim.compiled.flags import call_sum, summed, unsigned
 
 CONVERGED = 1e-20  # of the first residual, squared
 MOST = 300  # iterations
 
 
-@unsigned
+@summed
 def dot(a, b):
-    """Return a . b."""
+    """Return a . b; its order is that of the vector registers, whatever the threads."""
     total = 0.0
     for i in range(np.uint64(a.size)):
         total += a[i] * b[i]

@@ -170,7 +170,7 @@ def _rods(case: Case) -> Iterator[Finding]:
     if case.plane is not None:
         for name, rod in rods.items():
             for i in (1, 2) if rod.strain_twist != "natural" else ():
-                if rod.strain_twist[i] != 0.0:
+                if rod.entries[i] != 0.0:
                     reason = f"Omega_{i + 1} must be the number 0 where plane is {case.plane}"
                     yield ("rods", name, "strain_twist", i), reason
 

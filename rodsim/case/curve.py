@@ -42,7 +42,9 @@ class CurveBase(FromFile):
         description="of a table: names, or numbers from 1 on, of x y z, or of x y (z is 0)",
     )
     frame: Integer | None = Field(None, description="of a table: frame of several; -1 is the last")
-    rod: str | None = Field(None, description="of a table: which rod of several")
+    rod: Column | None = Field(
+        None, description="of a table: which rod of several: its name, or its number from 1 on"
+    )
     unit: UnitName | None = Field(None, description="of a table's lengths, if not the case's")
     closed: Flag = Field(False, description="join the end to the beginning")
     smoothing: NotNegative = quantity(

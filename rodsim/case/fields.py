@@ -165,8 +165,9 @@ def tag_of(value: Any) -> str:
 
 
 def text_tag(value: Any) -> str:
-    """Like ``tag_of``, for unions of a text and a list."""
-    return "<text>" if isinstance(value, str) else "<list>"
+    """Like ``tag_of``, for unions that have no member for a number."""
+    tag = tag_of(value)
+    return "<list>" if tag == "<number>" else tag
 
 
 def number_tag(value: Any) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import os
 import shlex
 from collections.abc import Iterable, Iterator, Mapping
@@ -17,6 +16,7 @@ from rodsim.case.model import Case
 from rodsim.case.numbers import Numbers
 from rodsim.case.overrides import apply_overrides
 from rodsim.case.places import Place, named
+from rodsim.case.plain import override_texts, plain
 from rodsim.case.slips import below, section_slips
 from rodsim.case.source import Source
 from rodsim.case.words import did_you_mean
@@ -28,17 +28,29 @@ LARGEST_FILE = 1_000_000  # bytes; a case is a few hundred
 MOST_PROBLEMS = 100
 
 
-def load_case(path: str | os.PathLike, overrides: Iterable[str] = ()) -> Case:
-    """Return the validated case in a YAML file, after overrides such as ``"time.end=0.01"``.
+def load_case(
+    case: str | os.PathLike[str] | Mapping[str, Any],
+    overrides: Iterable[str] | Mapping[str, Any] = (),
+) -> Case:
+    """Return the validated case in a YAML file, or in a mapping that has what such a file has.
 
-    Raises CaseError, whose ``problems`` name file:line, key, value and reason of all that is wrong.
+    ``overrides`` : a list of texts, ``["time.end=0.01"]``, or a mapping, ``{"time.end": 0.01}``, as
+    ``--set`` takes them. Numbers and arrays may be NumPy's. Files that a mapping names lie in the
+    current folder. Raises CaseError, whose ``problems`` name file:line, key, value and reason of
+    all that is wrong.
     """
-    if isinstance(overrides, str) or not all(isinstance(text, str) for text in overrides):
-        raise UsageError('overrides must be texts in a list, such as ["time.end=0.01"]')
-    name = os.fspath(path)
+    texts = override_texts(overrides)
+    if isinstance(case, Mapping):
+        return case_from_mapping(case, texts)
+    if isinstance(case, Case) or not isinstance(case, str | os.PathLike):
+        raise UsageError(
+            f"load_case takes the path of a file or a dict, not {type(case).__name__}"
+            + ("; of a case: case.resolved()" if isinstance(case, Case) else "")
+        )
+    name = os.fspath(case)
     text = _read(name)
     data, lines, problems = compose(text, lambda line: f"{name}:{line}")
-    return _build(Source(name, text, tuple(overrides), data, lines, Place(Case)), problems)
+    return _build(Source(name, text, texts, data, lines, Place(Case)), problems)
 
 
 def case_from_mapping(
@@ -49,7 +61,7 @@ def case_from_mapping(
     ``path`` stands for the file in messages. Raises CaseError as ``load_case`` does.
     """
     root = Place(Case)
-    return _build(Source(path, "", tuple(overrides), copy.deepcopy(dict(data)), {}, root), [])
+    return _build(Source(path, "", tuple(overrides), plain(data), {}, root), [])
 
 
 def _read(name: str) -> str:

@@ -20,7 +20,7 @@ from rodsim.case.fields import (
 )
 from rodsim.case.materials import Material
 from rodsim.case.shapes import Perturb, Shape
-from rodsim.case.strain import OWN, StrainEntry, StrainTable
+from rodsim.case.strain import OWN, TABLES, OneOfThree, StrainEntry, StrainTable, StrainTables
 from rodsim.registry import with_words
 
 
@@ -74,12 +74,13 @@ class Rod(Model):
     moduli: Moduli = Field(description="elastic moduli")
     strain_twist: Annotated[
         Annotated[Literal["natural"], Tag("<text>")]
+        | Annotated[StrainTables, Tag("<mapping>")]
         | Annotated[tuple[StrainEntry, StrainEntry, StrainEntry], Tag("<list>")],
         Discriminator(text_tag),
     ] = quantity(
         "curvature",
         "natural: of the shape as built; or Omega_1, Omega_2, Omega_3: numbers, expressions in s, "
-        "t, natural_1..3 and the parameters, or tables",
+        "t, natural_1..3 and the parameters, or tables; or one table of all three",
         default=(0.0, 0.0, 0.0),
     )
     perturb: Perturb | None = Field(
@@ -87,15 +88,18 @@ class Rod(Model):
     )
 
     @property
-    def entries(self) -> tuple[float | Expression | StrainTable, ...]:
+    def entries(self) -> tuple[float | Expression | StrainTable | OneOfThree, ...]:
         """Omega_1, Omega_2, Omega_3."""
-        return OWN if self.strain_twist == "natural" else self.strain_twist
+        given = self.strain_twist
+        if isinstance(given, StrainTables):
+            return given.entries
+        return OWN if given == "natural" else given
 
     @property
     def driven(self) -> bool:
         """Whether its strain twist depends on time, or may: a table is not read yet."""
         return any(
-            isinstance(entry, StrainTable) or (isinstance(entry, Expression) and entry.uses_t)
+            isinstance(entry, TABLES) or (isinstance(entry, Expression) and entry.uses_t)
             for entry in self.entries
         )
 
@@ -108,10 +112,10 @@ class Rod(Model):
     def files(self) -> list[str]:
         """The files of its shape and its tables, as the case names them."""
         shape = getattr(self.shape, "path", None)
-        tables = [entry.table for entry in self.entries if isinstance(entry, StrainTable)]
+        tables = dict.fromkeys(e.table for e in self.entries if isinstance(e, TABLES))
         return [path for path in (shape, *tables) if path is not None]
 
     @property
     def needs_data(self) -> bool:
         """Whether its strain twist is known only once the rod is built or a table read."""
-        return self.uses_natural or any(isinstance(entry, StrainTable) for entry in self.entries)
+        return self.uses_natural or any(isinstance(entry, TABLES) for entry in self.entries)

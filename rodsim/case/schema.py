@@ -13,7 +13,7 @@ def case_schema() -> dict[str, Any]:
     """Return the JSON Schema (draft-07) of the case file as people write it."""
     schema = _with_expressions(model_schema())
     models = schema["definitions"]
-    models["RodLike"] = _like_another(models["Rod"])
+    models |= _partial(models, "Rod")
     rods = schema["properties"]["rods"]["patternProperties"]
     for pattern, rod in rods.items():
         like = {"$ref": "#/definitions/RodLike"}
@@ -42,14 +42,32 @@ def _with_expressions(node: Any) -> Any:
     return changed
 
 
-def _like_another(rod: dict[str, Any]) -> dict[str, Any]:
-    """Return the schema of a rod that need not say all, because it is like another."""
-    changed = {key: item for key, item in rod.items() if key != "required"}
-    parts = {
-        name: {"type": "object", "description": rod["properties"][name]["description"]}
-        for name in ("shape", "moduli")
-    }
-    return {**changed, "properties": {**rod["properties"], **parts}}
+def _partial(models: dict[str, Any], name: str) -> dict[str, Any]:
+    """Return a model and all below it as they may stand in a rod that is like another: ...Like.
+
+    Nothing is required, for the other rod may say it; of a union any member that fits will do.
+    """
+    made, wanted = {}, [name]
+    while wanted:
+        model = wanted.pop()
+        if f"{model}Like" not in made:
+            made[f"{model}Like"] = _without_required(models[model], wanted)
+    return made
+
+
+def _without_required(node: Any, wanted: list[str]) -> Any:
+    """Return a schema that requires no key; models that it refers to are added to ``wanted``."""
+    if isinstance(node, list):
+        return [_without_required(item, wanted) for item in node]
+    if not isinstance(node, dict):
+        return node
+    kept = {key: item for key, item in node.items() if key not in ("required", "discriminator")}
+    changed = {"anyOf" if key == "oneOf" else key: _without_required(item, wanted)
+               for key, item in kept.items()}  # fmt: skip
+    if "$ref" in changed:
+        wanted.append(changed["$ref"].rpartition("/")[2])
+        changed["$ref"] += "Like"
+    return changed
 
 
 def _to_draft_07(node: Any) -> Any:

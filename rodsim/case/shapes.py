@@ -100,7 +100,10 @@ class FileShape(FromFile):
     kind: Literal["file"]
     path: str = Field(min_length=1, description="output file, table, or export")
     frame: Integer | None = Field(None, description="frame of several; -1 is the last")
-    rod: str | None = Field(None, description="which rod of several")
+    rod: Column | None = Field(
+        None,
+        description="which rod of several: its name, or its number from 1 on where it has none",
+    )
     columns: tuple[Column, ...] | None = Field(
         None,
         min_length=12,

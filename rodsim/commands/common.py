@@ -40,6 +40,13 @@ max_wall_option = click.option(
 )
 
 
+until_option = click.option(
+    "--until",
+    type=click.Choice(["still"]),
+    help="End before time.end when nothing moves any more.",
+)
+
+
 def load(path, overrides):
     """Return the validated case in a file."""
     from rodsim.case import load_case

@@ -19,7 +19,7 @@ from rodsim.commands.common import output_argument, say_written, written_path
 @click.option("--tracers", is_flag=True, help="The fluid markers instead of the rods.")
 @click.option("--radius", type=click.FloatRange(0, min_open=True), metavar="LENGTH",
               help="Of the tubes in ParaView; by default the radius of the cylinder that moves "
-              "the fluid as the rod does, epsilon exp(-1/2).")
+              "the fluid as the rod does, 0.607 epsilon (algebraic7) or 0.368 epsilon.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress, no message.")
 def export(output, path, every, tracers, radius, quiet):
     # fmt: on

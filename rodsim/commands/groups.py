@@ -74,7 +74,7 @@ def _groups(case, scene, r: int) -> str:
     if drag <= 0.0:  # as thick as long: not slender
         return ", ".join(parts)
     parts.append(f"elasto-viscous time {drag * length**4 / bending:.4g} {case.units.time}")
-    entries = case.rods[scene.rods.names[r]].strain_twist
+    entries = case.rods[scene.rods.names[r]].entries
     if frequency := drive_frequency(entries, length, case.time.end):
         parts.append(f"drive {frequency:.4g} rad/{case.units.time}")
         parts.append(f"sperm number {length * (drag * frequency / bending) ** 0.25:.4g}")

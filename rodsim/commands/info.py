@@ -12,7 +12,7 @@ from rodsim.commands.common import is_output, load, prepare_numba, say, say_warn
 @set_option
 @click.option("--check", is_flag=True, help="Read the whole output and say if all of it is good.")
 def info(path, overrides, check):
-    """Describe a case (points, fastest rate, stable steps) or an output file."""
+    """Describe a case (points, fastest rate, stable steps, what a run costs) or an output file."""
     from rodsim.commands import reports
 
     if is_output(path):

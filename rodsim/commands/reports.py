@@ -12,6 +12,7 @@ from rodsim.commands.groups import (
     in_water_units,
 )
 from rodsim.commands.held import describe_held
+from rodsim.commands.stored_case import describe_stored
 from rodsim.errors import FileError
 from rodsim.run.ending import Motion, gap_sentence
 from rodsim.run.recorder import frame_times
@@ -20,20 +21,20 @@ from rodsim.scene.build import build_scene
 from rodsim.scene.restore import restore_case, stored_diameter
 from rodsim.units import unit_text
 
-MOST_RODS = 50  # described one by one
 
-
-def describe_case(case, refuse=False) -> str:
-    """Return the resolved scene, its fastest rate, and the stable step of every integrator.
+def describe_case(case, refuse=False, threads=None) -> str:
+    """Return the resolved scene, its fastest rate, stable steps, and what a run will cost.
 
     ``refuse`` : raise CaseError for what a run would refuse, a fixed step above its limit.
+    ``threads`` : of the run, None for as many as the scene is worth.
     """
+    from rodsim.commands.costs import describe_costs
     from rodsim.commands.geometry import describe_start
-    from rodsim.integrators.limits import check_step, stability
-    from rodsim.scene.system import RodSystem
+    from rodsim.integrators.limits import check_step
+    from rodsim.run.machine import Machine
 
     scene = build_scene(case)
-    system = RodSystem(scene)
+    machine = Machine(case, scene, force=False)
     unit = case.units
     lines = [case.title] if case.title else []
     lines += [*describe_parameters(case), *describe_rods(case, scene)]
@@ -45,7 +46,7 @@ def describe_case(case, refuse=False) -> str:
         f"= {scene.epsilon / scene.rods.spacing[0]:.4g} spacings"
     )
     lines += describe_held(case, scene)
-    lines += describe_start(scene, system, unit.names)
+    lines += describe_start(scene, machine.system, unit.names)
     if scene.wall is not None:
         lines.append(describe_wall(scene, unit.length))
     if scene.planar:
@@ -60,10 +61,11 @@ def describe_case(case, refuse=False) -> str:
     how = f"{option} {getattr(time, option):g}"
     frames = len(frame_times(time.end, case.interval))
     lines.append(f"time: to {time.end:g} {unit.time} by {time.integrator}, {how}; {frames} frames")
-    limits = stability(system)
+    limits = machine.limits
     if refuse:
         lines += [f"warning: {problem}" for problem in check_step(case, limits)]
-    return "\n".join([*lines, *describe_limits(limits, unit.time)])
+    lines += describe_limits(limits, unit.time)
+    return "\n".join([*lines, *describe_costs(machine, threads)])
 
 
 def _acting(parts) -> str:
@@ -147,7 +149,8 @@ def _endings(run):
         return []
     motion = Motion(is_driven(case))
     motion.read(run, run.frames)
-    sentences = [motion.sentence(run.units)]
+    at_rest = run.status == "finished" and run.frames < len(run.planned)
+    sentences = [motion.sentence(run.units, at_rest)]
     if "gap" in run.observables:
         gaps = run.observable("gap")
         k, diameter = int(gaps.argmin()), stored_diameter(run, case)
@@ -190,11 +193,7 @@ def describe_output(path) -> str:
             f"{run.frames} of {len(run.planned)} frames, {last}",
             f"written by rodsim {run.version}, {run.created}; format {run.format}",
         ]
-        for rod in run.rods[:MOST_RODS]:
-            kind = "closed" if rod.closed else "open"
-            lines.append(f"rod {rod.name}: {rod.count} points, {kind}, spacing {rod.spacing:g}")
-        if len(run.rods) > MOST_RODS:
-            lines.append(f"and {len(run.rods) - MOST_RODS} more rods")
+        lines += describe_stored(run)
         lines += _endings(run)
         for name in run.bodies:
             kept = run.body(name)

@@ -1,5 +1,7 @@
 """``rodsim resume``."""
 
+from time import perf_counter
+
 import click
 
 from rodsim.commands.common import (
@@ -9,6 +11,7 @@ from rodsim.commands.common import (
     say,
     set_option,
     threads_option,
+    until_option,
 )
 
 
@@ -17,8 +20,9 @@ from rodsim.commands.common import (
 @set_option
 @threads_option
 @max_wall_option
+@until_option
 @click.option("-q", "--quiet", is_flag=True, help="No progress and no summary.")
-def resume(output, overrides, threads, max_wall, quiet):
+def resume(output, overrides, threads, max_wall, until, quiet):
     """Go on where a run stopped or was killed, in the same file and with the same bits.
 
     --set can only give a later time.end, or more output.fields.
@@ -26,12 +30,12 @@ def resume(output, overrides, threads, max_wall, quiet):
     prepare_numba()
     from rodsim.commands.console import Console
     from rodsim.run.past import open_past
-    from rodsim.run.simulate import resume
+    from rodsim.run.simulate import go_on
 
+    started = perf_counter()
     with open_past(output, overrides) as past:
-        case, complete = past.case, past.complete
-    if complete:
-        quiet or say(f"{output}: is finished; a later end: --set time.end=...")
-        return
-    with Console(output, quiet, max_wall).about(case, output.name) as console:
-        resume(output, overrides=overrides, threads=threads, listener=console)
+        if past.complete:
+            quiet or say(f"{output}: is finished; a later end: --set time.end=...")
+            return
+        with Console(output, quiet, max_wall).about(past.case, output.name) as console:
+            go_on(past, started, threads, console, until)

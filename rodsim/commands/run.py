@@ -13,6 +13,7 @@ from rodsim.commands.common import (
     say_warnings,
     set_option,
     threads_option,
+    until_option,
 )
 from rodsim.files import DEFAULT_OUTPUT
 
@@ -30,11 +31,14 @@ from rodsim.files import DEFAULT_OUTPUT
 @set_option
 @threads_option
 @max_wall_option
+@until_option
 @click.option("--overwrite", is_flag=True, help="Replace an existing output file.")
 @click.option("--force", is_flag=True, help="Run also with a fixed step above its limit.")
-@click.option("--dry-run", is_flag=True, help="Check the case and say what it would do, no more.")
+@click.option(
+    "--dry-run", is_flag=True, help="Check the case and say what it would do and cost, no more."
+)
 @click.option("-q", "--quiet", is_flag=True, help="No progress and no summary.")
-def run(case_path, output, overrides, threads, max_wall, overwrite, force, dry_run, quiet):
+def run(case_path, output, overrides, threads, max_wall, until, overwrite, force, dry_run, quiet):
     """Run a case and write its trajectory, energies and balances to an HDF5 file."""
     case = load(case_path, overrides)
     say_warnings(case)
@@ -42,10 +46,13 @@ def run(case_path, output, overrides, threads, max_wall, overwrite, force, dry_r
     if dry_run:
         from rodsim.commands import reports
 
-        say(reports.describe_case(case, refuse=not force), err=False)
+        say(reports.describe_case(case, not force, threads), err=False)
         return
     from rodsim.commands.console import Console
     from rodsim.run.simulate import simulate
 
     with Console(output, quiet, max_wall).about(case, case_path.name) as console:
-        simulate(case, output, overwrite=overwrite, threads=threads, force=force, listener=console)
+        simulate(
+            case, output, overwrite=overwrite, threads=threads, force=force, until=until,
+            listener=console,
+        )  # fmt: skip

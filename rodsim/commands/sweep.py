@@ -30,13 +30,16 @@ _FILE, _FOLDER = (click.Path(path_type=Path, dir_okay=d, file_okay=not d) for d 
               help="Print the commands that are left to do, one per line, and run none.")
 @click.option("--period", metavar="EXPRESSION",
               help="Measure speed over whole periods after the first, e.g. '2*pi/sigma'.")
+@click.option("--measure", "measures", multiple=True, metavar="NAME,...",
+              help="More columns: quantities of rodsim measure, writhe or tail.speed or "
+              "my.py:function.")
 @click.option("--reference", type=_FILE, metavar="OUT.h5",
               help="Give the largest distance from this output, at the end, as the error.")
 @click.option("--plot", "plots", type=(str, str, _FILE), multiple=True, metavar="X Y FILE",
               help="Draw one column over another (needs rodsim[plot]).")
 @click.option("-q", "--quiet", is_flag=True, help="No progress.")
 def sweep(case_path, overrides, table, folder, jobs, threads, scheduler, only_list, period,
-          reference, plots, quiet):
+          measures, reference, plots, quiet):
     # fmt: on
     """Run a case for many values: --set KEY=[A,B,C] runs over a list, here or on a cluster.
 
@@ -49,7 +52,8 @@ def sweep(case_path, overrides, table, folder, jobs, threads, scheduler, only_li
     from rodsim.sweep.work import command
 
     plan = make_plan(case_path, overrides, table, folder)
-    summary = Summary(plan, period, reference)
+    names = tuple(name.strip() for text in measures for name in text.split(","))
+    summary = Summary(plan, period, reference, names)
     pictures = [(summary.column(x), summary.column(y), path) for x, y, path in plots]
     left = [run for run in plan.runs if summary.rows[run.name]["status"] not in DONE]
     _say_what_is_anew(left, summary)

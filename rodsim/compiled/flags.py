@@ -40,6 +40,7 @@ SUM_FLAGS = {"reassoc", "contract", "arcp", "nsz"}
 
 kernel = partial(cached_njit, error_model="numpy")
 parallel_kernel = partial(cached_njit, error_model="numpy", parallel=True, fastmath=SUM_FLAGS)
+summed = partial(cached_njit, error_model="numpy", fastmath=SUM_FLAGS)  # the same, reordered
 unsigned = kernel  # without a signature: compiled with whatever calls it
 inline = partial(cached_njit, error_model="numpy", inline="always")
 

@@ -22,10 +22,10 @@ def export_run(run, path, *, every=1, tracers=False, radius=None, progress=None)
     """Write every ``every``-th frame of an open run to a file whose suffix says the format.
 
     ``tracers``: the fluid markers instead of the rods (an .npz always has both). ``radius``: of
-    the tubes in ParaView, a length; by default ``epsilon e^(-1/2)``, the radius of the cylinder
-    that drags the fluid along as the rod does. With the rods an .vtkhdf has the surfaces of bodies
-    as triangles, and a piece of the wall, where there is one, as a polygon of four points more;
-    their points have NaN for data. Raises FileError.
+    the tubes in ParaView, a length; by default that of the cylinder that drags the fluid along
+    as the rod does: ``epsilon e^(-1/2)``, or ``e^(-1)`` for algebraic9. With the rods an .vtkhdf
+    has the surfaces of bodies as triangles, and a piece of the wall, where there is one, as a
+    polygon of four points more; their points have NaN for data. Raises FileError.
     """
     frames = range(0, run.frames, every)
     if not frames:
@@ -63,10 +63,10 @@ def export_paths(path, time, paths, progress=None) -> None:
 
 
 def tube_radius(run) -> float:
-    """Return ``epsilon e^(-1/2)``: a line of blobs moves as a cylinder of this radius does."""
-    from rodsim.scene.restore import restore_scene
+    """Return the radius of the cylinder that moves as a line of the run's blobs does."""
+    from rodsim.scene.restore import restore_case, stored_diameter
 
-    return float(restore_scene(run).epsilon * np.exp(-0.5))
+    return 0.5 * stored_diameter(run, restore_case(run))
 
 
 def _markers(run, frames):

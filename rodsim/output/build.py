@@ -35,11 +35,11 @@ def build_file(path: Path, plan: Plan) -> h5py.File:
 
     Raises FileError where it cannot fit or cannot be written; then no file is left.
     """
-    needed = _room(plan)
+    needed = room(plan)
     free = shutil.disk_usage(path.parent).free
     if needed > free:
         raise FileError(
-            f"the output needs {_size(needed)}, {_size(free)} are free: "
+            f"the output needs {size(needed)}, {size(free)} are free: "
             "give a longer output.interval or fewer output.fields"
         )
     file = h5py.File(path, "x", locking=False)
@@ -66,7 +66,8 @@ def trim(file: h5py.File) -> None:
     os.ftruncate(descriptor(file), file.id.get_filesize())
 
 
-def _room(plan):
+def room(plan: Plan) -> int:
+    """Return the bytes that an output file takes while it is written, or a little more."""
     texts = (plan.case.source, plan.case.resolved, plan.case.inputs, *plan.case.overrides)
     count = plan.value_bytes() + FRAME_BYTES * len(plan.times) + 4 * sum(map(len, texts))
     count += 2 * sum(np.asarray(value).nbytes for value in plan.checkpoint.values())
@@ -77,7 +78,8 @@ def _room(plan):
     return count + FILE_BYTES
 
 
-def _size(count):
+def size(count: float) -> str:
+    """Return a number of bytes as it is read."""
     for unit in ("bytes", "kB", "MB", "GB", "TB"):
         if count < 999.5:
             return f"{count:.3g} {unit}"

@@ -8,7 +8,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from rodsim.errors import FileError
+from rodsim.errors import FileError, UsageError
 from rodsim.output.packed import PACKING, what_is_wrong
 
 CASES = (".yaml", ".yml")  # suffixes
@@ -43,12 +43,25 @@ class GuardedFile:
         """Close the file."""
         self._file.close()
 
+    @property
+    def is_open(self) -> bool:
+        """Whether it can still be read from."""
+        return bool(self._file)
+
+    def _check_open(self):
+        if not self._file:
+            raise UsageError(
+                f"{self.path}: is closed, and this was not read before: read inside the with "
+                "block, or open it again"
+            )
+
     def damaged(self, what: str) -> FileError:
         """Return the error that says what is wrong with the file."""
         return FileError(f"{self.path}: damaged: {what}")
 
     def names(self, group: str) -> list[str]:
         """Return the names in a group, none if there is no such group."""
+        self._check_open()
         try:
             node = self._node(group, h5py.Group)
         except FileError:
@@ -163,6 +176,7 @@ class GuardedFile:
 
     def _node(self, name, kind=h5py.HLObject):
         """Walk to an object link by link."""
+        self._check_open()
         node = self._file
         try:
             for part in filter(None, name.split("/")):

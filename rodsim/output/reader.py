@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 from operator import index
+from typing import Any, Self
 
 import numpy as np
 
@@ -16,7 +18,7 @@ from rodsim.output.guarded import GuardedFile
 from rodsim.output.layout import CLOCK, OBSERVABLES, TRACERS, TRAJECTORY
 
 
-def open_trajectory(path) -> Trajectory:
+def open_trajectory(path: str | os.PathLike[str]) -> Trajectory:
     """Open an output file for reading; raises FileError, in one line, if it cannot be trusted.
 
     >>> with open_trajectory("out.h5") as run:
@@ -42,7 +44,17 @@ class Trajectory(OfBodies):
     units : names of the units of ``length``, ``mass``, ``time``. runtime : what the run has cost.
     """
 
-    def __init__(self, path):
+    frames: int
+    points: int
+    time: np.ndarray
+    steps: np.ndarray
+    planned: np.ndarray
+    rods: Rods
+    status: str
+    units: dict[str, str]
+    runtime: dict[str, Any]
+
+    def __init__(self, path: str | os.PathLike[str]):
         self.path = path
         self._file = GuardedFile(path)
         try:
@@ -52,10 +64,10 @@ class Trajectory(OfBodies):
             self.close()
             raise
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *error):
+    def __exit__(self, *error: object) -> None:
         self.close()
 
     def close(self) -> None:

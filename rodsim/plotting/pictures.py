@@ -6,11 +6,13 @@ import numpy as np
 
 from rodsim.analysis.energy import energy_table
 from rodsim.analysis.frames import nearest_frame, spread_frames
+from rodsim.analysis.measuring import over_time, pick
 from rodsim.analysis.strain import bend, is_flat, strain_twist
 from rodsim.errors import FileError, UsageError
 from rodsim.output import open_trajectory
 from rodsim.plotting import style
 from rodsim.plotting.camera import make_camera
+from rodsim.plotting.curves import plot_curves, run_names
 from rodsim.plotting.energy import plot_energies
 from rodsim.plotting.movie import write_movie
 from rodsim.plotting.over_time import draw_kymograph, draw_speeds, limits_of
@@ -18,7 +20,9 @@ from rodsim.plotting.rod import KINDS
 from rodsim.plotting.shapes import Shapes, draw_overlay, draw_panels
 
 THICKNESS = 0.03  # of the length of the longest rod
+ARROW = 0.06  # likewise, of D^1 and D^2
 PANELS = 6
+OF_SEVERAL = {"energy": "elastic_energy"}  # of several runs, one curve each
 
 
 def read_title(run) -> str:
@@ -41,21 +45,21 @@ def surfaces_of(run, frames):
     return np.array([run.surfaces(frame) for frame in frames]), run.triangles
 
 
-def plot_shapes(path, out, *, frames, at, view, kind, colour, overlay):
+def plot_shapes(path, out, *, frames, at, view, kind, colour, overlay, directors=False):
     """Draw the shapes of a run: ``frames`` of them, or those nearest to the times ``at``."""
     with open_trajectory(path) as run:
         chosen = _frames(run, frames or PANELS, at)
-        camera, shapes, key = _look(run, chosen, view, kind, colour)
+        camera, shapes, key = _look(run, chosen, view, kind, colour, directors)
         title = read_title(run)
     draw = draw_overlay if overlay else draw_panels
     style.save(draw(shapes, camera, title, key if overlay or colour != "time" else None), out)
 
 
-def plot_movie(path, out, *, frames, view, kind, colour, fps, progress):
+def plot_movie(path, out, *, frames, view, kind, colour, fps, progress, directors=False):
     """Write a movie of a run, of all its frames or of ``frames`` of them."""
     with open_trajectory(path) as run:
         chosen = _frames(run, frames or run.frames, ())
-        camera, shapes, _ = _look(run, chosen, view, kind, colour)
+        camera, shapes, _ = _look(run, chosen, view, kind, colour, directors)
         title = read_title(run)
     write_movie(out, shapes, camera, fps, title, progress)
 
@@ -77,6 +81,22 @@ def plot_speed(path, out):
     unit = f"{units['length']} {units['time']}^-1"
     draw_speeds(figure.add_subplot(), time, velocity, unit, units["time"])
     style.save(figure, out)
+
+
+def plot_measures(paths, out, names):
+    """Draw quantities of one run or several over time, see :mod:`rodsim.analysis.measures`."""
+    if alone := {"shapes", "curvature"} & {*names}:
+        raise UsageError(f"-w {alone.pop()}: is a picture of one run, alone")
+    tables, units = {}, {}
+    for path, name in zip(paths, run_names(paths), strict=True):
+        if name in tables:
+            raise UsageError(f"{path}: is given twice")
+        with open_trajectory(path) as run:
+            tables[name] = over_time(run, pick(run, [OF_SEVERAL.get(n, n) for n in names]))
+        units |= {c.quantity: c.unit for c in tables[name].columns}
+        if any(units[c.quantity] != c.unit for t in tables.values() for c in t.columns):
+            raise UsageError(f"{path}: is in other units than {paths[0]}")
+    plot_curves(tables, out)
 
 
 def plot_kymograph(path, out, quantity):
@@ -111,17 +131,18 @@ def _frames(run, wanted, at):
     return spread_frames(run.frames, wanted)
 
 
-def _look(run, chosen, view, kind, colour):
+def _look(run, chosen, view, kind, colour, directors):
     """Return the camera, the shapes and the key of the colours for some frames."""
     position = np.array([run.read("position", frame) for frame in chosen])
     surfaces, triangles = surfaces_of(run, chosen)
     seen = position if surfaces is None else np.concatenate([position, surfaces], axis=1)
     camera = make_camera(view, seen, upright=run.wall is not None)
-    kind = kind or ("line" if camera.flat or "director" not in run.fields else "tube")
+    line = camera.flat or directors or "director" not in run.fields
+    kind = kind or ("line" if line else "tube")
     if kind not in KINDS:
         raise UsageError(f"style must be one of {', '.join(KINDS)}, not {kind!r}")
     director = None
-    if kind != "line":
+    if kind != "line" or directors:
         director = np.array([run.read("director", frame) for frame in chosen])
     colours, key = _colours(run, chosen, colour)
     tracers = np.zeros((len(chosen), 0, 3))
@@ -129,7 +150,8 @@ def _look(run, chosen, view, kind, colour):
         tracers = np.array([run.read("tracers", frame) for frame in chosen])
     shapes = Shapes(
         run.time[chosen], position, director, run.rods, colours, tracers, run.units,
-        thickness(run), kind, run.wall, surfaces, triangles,
+        thickness(run), kind, run.wall, directors * ARROW / THICKNESS * thickness(run),
+        surfaces, triangles,
     )  # fmt: skip
     return camera, shapes, key
 

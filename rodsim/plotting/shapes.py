@@ -9,6 +9,7 @@ import numpy as np
 from rodsim.analysis.wall import piece_of_wall
 from rodsim.plotting import style
 from rodsim.plotting.camera import AXES, Camera
+from rodsim.plotting.directors import LAYERS, draw_directors, draw_key
 from rodsim.plotting.rod import draw_rods, draw_tracers
 from rodsim.plotting.wall import draw_wall, with_wall
 
@@ -23,8 +24,8 @@ class Shapes:
 
     colours : rgba for each frame and rod, (4,) or (S, 4). tracers : (T, P, 3), P may be 0.
     units : names of the units of ``length`` and ``time``. size : diameter or width of the rods.
-    wall : height of a wall, or None. surfaces : of bodies, (T, S, 3), and triangles (F, 3) between
-    their points; or None.
+    wall : height of a wall, or None. arrows : length of D^1 and D^2 drawn as arrows, 0 for none.
+    surfaces : of bodies, (T, S, 3), and triangles (F, 3) between their points; or None.
     """
 
     time: np.ndarray
@@ -37,6 +38,7 @@ class Shapes:
     size: float
     kind: str
     wall: float | None = None
+    arrows: float = 0.0
     surfaces: np.ndarray | None = None
     triangles: np.ndarray | None = None
 
@@ -48,7 +50,10 @@ class Shapes:
         director = None if self.director is None else self.director[frame]
         shape = self.position[frame], director, self.size, self.colours[frame], self.kind
         bodies = None if self.surfaces is None else (self.surfaces[frame], self.triangles)
-        return draw_rods(axis, camera, self.rods, *shape, bodies)
+        draw_rods(axis, camera, self.rods, *shape, bodies)
+        if self.arrows:
+            draw_directors(axis, camera, self.rods, *shape[:2], self.arrows)
+        return axis
 
     def bounds(self, camera: Camera) -> np.ndarray:
         """Return [[left, bottom], [right, top]] of all frames, with a margin."""
@@ -57,7 +62,7 @@ class Shapes:
         seen = camera.project(shown)[:, :2]
         low, high = seen.min(axis=0), seen.max(axis=0)
         extent = (high - low).max() or np.ptp(points, axis=0).max() or 1.0  # seen end on
-        space = MARGIN * extent + (self.size if self.kind != "line" else 0.0)
+        space = MARGIN * extent + max(self.size if self.kind != "line" else 0.0, self.arrows)
         return np.array([low - space, high + space])
 
     def _points(self):
@@ -92,7 +97,7 @@ def draw_panels(shapes: Shapes, camera: Camera, title: str = "", key=None):
     for axis in axes[count:]:
         axis.set_visible(False)
     annotate(figure, axes[0], camera, bounds, shapes.units["length"])
-    _finish(figure, list(axes[:count]), title, key)
+    _finish(figure, list(axes[:count]), title, key, shapes.arrows)
     return figure
 
 
@@ -105,9 +110,10 @@ def draw_overlay(shapes: Shapes, camera: Camera, title: str = "", key=None):
     set_stage(axis, camera, bounds)
     for frame in range(len(shapes.time)):
         shapes.draw(axis, camera, frame)
-        axis.collections[-1].set_zorder(2.0 + frame)
+        for drawn in axis.collections[-1 - (LAYERS if shapes.arrows else 0) :]:
+            drawn.set_zorder(2.0 + frame)
     annotate(figure, axis, camera, bounds, shapes.units["length"])
-    _finish(figure, [axis], title, key)
+    _finish(figure, [axis], title, key, shapes.arrows)
     return figure
 
 
@@ -175,7 +181,9 @@ def annotate(figure, axis, camera: Camera, bounds, unit: str) -> None:
     draw_compass(figure, camera)
 
 
-def _finish(figure, axes, title, key):
+def _finish(figure, axes, title, key, arrows):
+    if arrows:
+        draw_key(figure)
     if title:
         figure.suptitle(title, fontsize=11)
     if key:

@@ -9,6 +9,7 @@ import numpy as np
 
 KEPT = 6  # frames
 GROWTH, JUMP = 3.0, 20.0  # over several steps, in one
+STILL = 1e-4  # of the longest rod's length: what points of a scene at rest would move until the end
 
 
 def gap_sentence(smallest: float, time: float, diameter: float, units: dict) -> str:
@@ -53,12 +54,26 @@ class Motion:
             [np.linalg.norm(b - a, axis=0).max() / (end - t) for (_, t, a), (_, end, b) in pairs]
         )
 
-    def sentence(self, units: dict) -> str:
-        """Return how fast the fastest point moves and whether that grows; empty with one frame."""
+    def still(self, end: float, length: float) -> bool:
+        """Tell whether nothing moves any more: v * end <= 1e-4 length, v falling.
+
+        v is the speed of the fastest point over the last step; ``end`` the time that the run is to
+        take, which says what is slow in it; ``length`` that of the longest rod.
+        """
+        speeds = self.speeds()
+        falling = speeds.size > 1 and speeds[-1] <= speeds[-2]
+        return bool(not self.driven and falling and speeds[-1] * end <= STILL * length)
+
+    def sentence(self, units: dict, rest=False) -> str:
+        """Return how fast the fastest point moves and whether that grows; empty with one frame.
+
+        ``rest`` : the run has ended because nothing moved any more.
+        """
         speeds = self.speeds()
         if not speeds.size:
             return ""
         what = "fastest point" if self.driven else "still moving: fastest point"
+        what = "nothing moves any more: fastest point" if rest else what
         span = self._frames[-1][1] - self._frames[-2][1]
         unit = f"{units['length']}/{units['time']}"
         text = f"{what} {speeds[-1]:.2g} {unit} over the last {span:.2g} {units['time']}"

@@ -10,6 +10,7 @@ import warnings
 
 from rodsim.run.ending import gap_sentence
 from rodsim.scene.at_wall import mirror_gap
+from rodsim.scene.bodies import deepest_point
 from rodsim.scene.gap import closest_pair
 from rodsim.scene.neighbours import any_pair_counts, excluded, hydrodynamic_diameter
 
@@ -26,10 +27,11 @@ class Gap:
         self.smallest, self.time = math.inf, math.nan
         rods = scene.rods
         self._rods = rods.first, rods.count, rods.closed, excluded(scene)
-        self._any = any_pair_counts(scene)
+        self._any, self._inside = any_pair_counts(scene), False
 
     def measure(self, state) -> dict:
         """Return the observable ``gap`` of a frame, length; nothing where no two points count."""
+        self._look_into_bodies(state)
         if not self._any:
             return {}
         distance, first, second = closest_pair(state.position, *self._rods)
@@ -44,6 +46,20 @@ class Gap:
         if distance < self.smallest:
             self.smallest, self.time = distance, state.time
         return {"gap": distance}
+
+    def _look_into_bodies(self, state):
+        """Warn once where a rod has come into a body: nothing but the fluid keeps it out."""
+        if self._inside or not self.scene.bodies:
+            return
+        depth, point, body = deepest_point(self.scene, state)
+        if depth > 0.0:
+            self._inside = True
+            rod, k = self.scene.rods.locate(point)
+            length, unit = self.units["length"], self.units["time"]
+            self.notify(
+                f"point {k} of rod '{rod}' is {depth:.3g} {length} inside body '{body.name}' at "
+                f"t = {state.time:.6g} {unit}: the flow there means nothing (docs/bodies.md)"
+            )
 
     def resume(self, run, frames: int) -> None:
         """Go on after the first frames of a stored run: what was said is not said again."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass, field
 
+from rodsim.progress import make_progress
+
 
 @dataclass
 class Summary:
@@ -51,12 +53,28 @@ class Listener:
 
 class Functions(Listener):
     """A listener made of functions: ``notify`` hears warnings, ``stop`` is asked after each step,
-    ``progress`` has ``update(fraction, note)``. None of them is as in a :class:`Listener`."""
+    ``progress`` has ``update(fraction, note)``, or is True for the display that suits the place.
+    None of them is as in a :class:`Listener`."""
 
-    def __init__(self, notify=None, stop=None, progress=None):
+    def __init__(self, notify=None, stop=None, progress=None, label=""):
+        self._shown = make_progress(label, quiet=False) if progress is True else None
+        self._begun = False
         if notify is not None:
             self.warn = notify
         if stop is not None:
             self.stop = stop
-        if progress is not None:
+        if not (progress is None or isinstance(progress, bool)):
             self.update = progress.update
+
+    def update(self, fraction, note):
+        """Show the progress, where that is wanted, from the first step on."""
+        if self._shown and not self._begun:
+            self._shown.__enter__()
+            self._begun = True
+        if self._shown:
+            self._shown.update(fraction, note)
+
+    def ended(self, summary):
+        """End the display of the progress."""
+        if self._begun:
+            self._shown.__exit__(None, None, None)

@@ -41,6 +41,8 @@ def _march(machine, state, recorder, listener):
             reason = listener.stop()
             if new or reason or recorder.overdue:
                 recorder.checkpoint(capture(machine, recorder, step.end))
+            if new and recorder.still():
+                return
             listener.update(step.end.time / end, f"t = {step.end.time:.4g}")
             if reason and step.end.time < end:
                 raise StoppedError(f"stopped by {reason} at t = {step.end.time:.6g} of {end:g}")

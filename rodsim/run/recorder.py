@@ -59,6 +59,7 @@ class Recorder:
 
     def __init__(self, machine, started, compile_seconds):
         self.system, self.integrator = machine.system, machine.integrator
+        self.until_still, self.at_rest, self.end = False, False, machine.case.time.end
         self.gap, self.motion = machine.gap, Motion(machine.system.scene.parts.driven)
         self.started, self.compile_seconds = started, compile_seconds
         self.writer, self.next_frame, self.output_seconds = None, 0, 0.0
@@ -96,6 +97,12 @@ class Recorder:
         self.next_frame += 1
         self.output_seconds += perf_counter() - begin
 
+    def still(self) -> bool:
+        """Tell whether the run ends here, since it is to end when nothing moves any more."""
+        length = self.system.scene.length_scale
+        self.at_rest = self.until_still and self.motion.still(self.end, length)
+        return self.at_rest
+
     @property
     def overdue(self) -> bool:
         """Whether the last checkpoint is too long ago."""
@@ -132,7 +139,7 @@ class Recorder:
 
     def endings(self) -> list[str]:
         """Return what is to be said of the motion when the run ends."""
-        sentences = self.gap.sentence(), self.motion.sentence(self.gap.units)
+        sentences = self.gap.sentence(), self.motion.sentence(self.gap.units, self.at_rest)
         return [text for text in sentences if text]
 
     def runtime(self) -> dict:

@@ -3,26 +3,32 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Iterable, Mapping
 from time import perf_counter
+from typing import Any, Literal
 
 from rodsim.case import Case
+from rodsim.case.plain import override_texts
 from rodsim.errors import FileError, UsageError
 from rodsim.output import TrajectoryWriter
 from rodsim.run.listener import Functions, Listener, Summary
 from rodsim.run.past import open_past
 from rodsim.scene.build import build_scene
 
+STILL = "still"  # when a run is to end before its time
+
 
 def simulate(
-    case,
-    output,
+    case: Case,
+    output: str | os.PathLike[str],
     *,
-    overwrite=False,
-    threads=None,
-    force=False,
-    notify=None,
-    stop=None,
-    progress=None,
+    overwrite: bool = False,
+    threads: int | None = None,
+    force: bool = False,
+    until: Literal["still"] | None = None,
+    notify: Callable[[str], object] | None = None,
+    stop: Callable[[], str] | None = None,
+    progress: Any = None,
     listener: Listener | None = None,
 ) -> Summary:
     """Run a case and stream it to an HDF5 file.
@@ -34,9 +40,12 @@ def simulate(
         on (``Summary.moved``), unless ``overwrite``.
     threads : number of threads, at least 1, or None for as many as the scene is worth.
     force : run also with a fixed step above its limit of stability.
+    until : ``"still"`` ends the run before ``time.end`` when nothing moves any more, see
+        :meth:`rodsim.run.ending.Motion.still`.
     notify : called with the text of each warning; by default they are Python's own.
     stop : called after each step; returns why the run is to stop there, or an empty text.
-    progress : object with ``update(fraction, note)``.
+    progress : object with ``update(fraction, note)``, or True for a bar on a terminal, a line in a
+        notebook.
     listener : one :class:`rodsim.run.listener.Listener` in place of these three.
 
     Raises
@@ -48,13 +57,15 @@ def simulate(
     """
     if not isinstance(case, Case):
         raise UsageError("simulate takes a case: rodsim.load_case(path)")
-    listener = listener or Functions(notify, stop, progress)
+    listener = listener or Functions(notify, stop, progress, case.title or str(output))
     started = perf_counter()
     _refuse_sources(case, output)
     scene = build_scene(case)
     for problem in scene.warnings:
         listener.warn(str(problem))
+    _check_until(until, scene)
     machine, recorder = _prepare(case, scene, force, started, listener)
+    recorder.until_still = until == STILL
     from rodsim.run.march import record
     from rodsim.run.recorder import plan_output
     from rodsim.run.snapshot import capture
@@ -70,38 +81,55 @@ def simulate(
 
 
 def resume(
-    output,
+    output: str | os.PathLike[str],
     *,
-    overrides=(),
-    threads=None,
-    notify=None,
-    stop=None,
-    progress=None,
+    overrides: Iterable[str] | Mapping[str, Any] = (),
+    threads: int | None = None,
+    until: Literal["still"] | None = None,
+    notify: Callable[[str], object] | None = None,
+    stop: Callable[[], str] | None = None,
+    progress: Any = None,
     listener: Listener | None = None,
 ) -> Summary:
     """Go on with a run where it stopped or was killed, in the same file, with the same bits.
 
-    ``overrides`` may set a later ``time.end`` and add to ``output.fields``, nothing else; the rest
-    is as in :func:`simulate`. Raises CaseError for other changes, FileError for a file that cannot
-    be gone on with. A finished run without changes is left as it is.
+    ``overrides``, a list or dict as in :func:`rodsim.load_case`, may set a later ``time.end`` and
+    add to ``output.fields``, nothing else; the rest is as in :func:`simulate`. Raises CaseError for
+    other changes, FileError for a file that cannot be gone on with. A finished run without changes
+    is left as it is.
     """
-    listener = listener or Functions(notify, stop, progress)
+    listener = listener or Functions(notify, stop, progress, str(output))
     started = perf_counter()
-    with open_past(output, overrides) as past:
-        if past.complete:
-            return Summary("finished", past.run.frames)
-        for text in past.warnings():
-            listener.warn(text)
-        scene = build_scene(past.case, past)
-        force = bool(past.snapshot["force"])
-        machine, recorder = _prepare(past.case, scene, force, started, listener)
-        from rodsim.run.march import record
-        from rodsim.run.snapshot import restore
+    with open_past(output, override_texts(overrides)) as past:
+        return go_on(past, started, threads, listener, until)
 
-        state = restore(machine, recorder, past.snapshot)
-        recorder.follow(past.run)
-        with machine.threads(threads), past.writer(machine) as recorder.writer:
-            return record(machine, state, recorder, listener)
+
+def go_on(past, started: float, threads: int | None, listener: Listener, until=None) -> Summary:
+    """Go on with a :class:`rodsim.run.past.Past`; ``started``: when, by ``perf_counter``."""
+    if past.complete:
+        return Summary("finished", past.run.frames)
+    for text in past.warnings():
+        listener.warn(text)
+    scene = build_scene(past.case, past)
+    _check_until(until, scene)
+    force = bool(past.snapshot["force"])
+    machine, recorder = _prepare(past.case, scene, force, started, listener)
+    from rodsim.run.march import record
+    from rodsim.run.snapshot import restore
+
+    state = restore(machine, recorder, past.snapshot)
+    recorder.follow(past.run)
+    recorder.until_still = until == STILL
+    with machine.threads(threads), past.writer(machine) as recorder.writer:
+        return record(machine, state, recorder, listener)
+
+
+def _check_until(until, scene):
+    """Raise UsageError for an end that does not come."""
+    if until not in (None, STILL):
+        raise UsageError(f"until {until!r}: a run goes on to time.end, or until {STILL!r}")
+    if until and scene.parts.driven:
+        raise UsageError("until 'still': the scene is driven, so it never comes to rest")
 
 
 def _refuse_sources(case, output):

@@ -208,7 +208,7 @@ def check_bodies(case, scene) -> list:
                     f"point {k} lies {-outside[k]:.3g} inside body '{body.name}': move or turn one"
                 )
                 problems.append(case.source.problem(("rods", rod.name, "shape"), reason))
-    problems += _apart(case, scene)
+    problems += [*_apart(case, scene), *_below_wall(case, scene)]
     for name, which, end in held_ends(case):
         if end.to == "space" or end.gap:
             continue
@@ -237,6 +237,41 @@ def _apart(case, scene):
             if min(float(d.min()) for d in depths) < 0.0:
                 reason = f"overlaps body '{other.name}': move one"
                 yield case.source.problem(("bodies", body.name, "shape"), reason)
+
+
+def _below_wall(case, scene):
+    """Yield a problem for each body that is not above the wall."""
+    for body in scene.bodies if scene.wall is not None else ():
+        lowest = float((body.centre[:, None] + body.turn @ body.surface.skin)[2].min())
+        if lowest <= scene.wall:
+            reason = f"is at z = {lowest:.6g}: must be above the wall, z = {scene.wall:g}"
+            yield case.source.problem(("bodies", body.name, "shape"), reason)
+
+
+def deepest_point(scene, state):
+    """Return how far a rod's point lies inside a body, which point and body; 0 where none does.
+
+    Held points do not count: they are where they were put.
+    """
+    deepest, held = (0.0, -1, None), _held_nodes(scene)
+    for body in scene.bodies:
+        turn, centre = state.director[:, :, body.node].T, state.position[:, body.node]
+        points = turn.T @ (state.position[:, : scene.rods.points] - centre[:, None])
+        inside = -distance(body.shape, body.surface, points)
+        inside[held] = 0.0
+        k = int(np.argmax(inside))
+        if inside[k] > deepest[0]:
+            deepest = float(inside[k]), k, body
+    return deepest
+
+
+def _held_nodes(scene):
+    return [
+        end_node(scene.rods[scene.rods.names.index(name)], key.removeprefix("held_"))
+        for name, kept in scene.arrays.items()
+        for key in kept
+        if key.startswith("held_")
+    ]
 
 
 def _local(body, points):

@@ -66,7 +66,7 @@ def _from_table(shape, folder, unit, built):
         blocks = (
             f"has {len(points.breaks) + 1} blocks, the second from {points.name(points.breaks[0])}"
         )
-        reason = f"{blocks} on: one curve a file; take blank lines out of a single one"
+        reason = f"{blocks} on: choose one, rod: 1; or take blank lines out of a single one"
         built.errors.append(("path", reason))
     elif not distance.min() > SAME * np.median(distance):
         k = int(np.argmin(distance))
@@ -88,7 +88,8 @@ def _gaps(distance, position, shape, points):
     typical, k = np.median(distance), int(np.argmax(distance))
     if distance[k] > GAP * typical and not shape.as_is:
         apart = f"{points.name(k)} and {points.name(k + 1)} are {distance[k] / typical:.3g} times"
-        yield f"{apart} the median distance apart: a gap, or an open curve taken as closed?"
+        slips = "a gap, two curves, or an open one taken as closed?"
+        yield f"{apart} the median distance apart: {slips}"
     ends = np.linalg.norm(position[-1] - position[0])
     if not shape.closed and len(position) > 3 and ends < (1.0 + REFUSE) * typical:
         yield f"its ends are {ends / typical:.3g} median distances apart: closed: true joins them"

@@ -1,8 +1,13 @@
 """Elastic moduli along a rod, at the middle of each segment."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from rodsim.case.fields import LARGEST, SMALLEST
+from rodsim.compiled.parts import PartList
+from rodsim.forces.elastic import elastic_part
+from rodsim.nodes import Rods
 
 
 def moduli_along(moduli, spacing: float, segments: int) -> np.ndarray:
@@ -44,3 +49,14 @@ def check_moduli(moduli, along: np.ndarray, spacing: float):
             k = int(np.argmax(bad))
             at = f"is {row[k]:.4g} at s = {(k + 0.5) * spacing:.4g}"
             yield ("moduli", key), f"{at}: must be between {SMALLEST:g} and {LARGEST:g} everywhere"
+
+
+def with_moduli(scene, factors: np.ndarray):
+    """Return a scene with a_1, a_2, a_3, b_1, b_2, b_3 of all rods times ``factors`` (6,)."""
+    rods = Rods(replace(rod, moduli=tuple(factors * rod.moduli)) for rod in scene.rods)
+    along = scene.along
+    if along is not None:
+        along = np.concatenate([along[:6] * factors[:, None], along[6:]])
+    changed = replace(scene, rods=rods, along=along)
+    parts = (elastic_part(changed) if part.name == "elastic" else part for part in scene.parts)
+    return replace(changed, parts=PartList(parts))

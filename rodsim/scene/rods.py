@@ -110,7 +110,7 @@ def _bind(case, name, rod, built, stored, found):
     end = case.time.end
     along = moduli_along(rod.moduli, built.spacing, segments)
     built.errors += dict.fromkeys(check_moduli(rod.moduli, along, built.spacing))
-    built.errors += check_reach(rod, entries, built.spacing, segments, end)
+    built.errors += dict.fromkeys(check_reach(rod, entries, built.spacing, segments, end))
     if not built.errors and (rod.needs_data or rod.shape.ds is None):
         errors, warnings = check_strain_twist(entries, built.spacing, segments, end)
         built.errors += errors

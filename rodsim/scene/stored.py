@@ -140,7 +140,9 @@ def _hold(built, points):
     if points.breaks:
         where = points.name(points.breaks[0])
         blocks = f"has {len(points.breaks) + 1} blocks, the second from {where} on"
-        reason = f"{blocks}: one rod a file; take blank lines out of a single curve"
+        reason = (
+            f"{blocks}: choose one by its number, rod: 1; or take blank lines out of a single curve"
+        )
         built.errors.append(("path", f"{reason}, or as_is: true"))
         return
     geometry = Geometry(built.position, built.director, built.spacing, built.closed)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from rodsim.case.expressions import Expression
-from rodsim.case.strain import StrainTable
+from rodsim.case.strain import TABLES
 from rodsim.errors import FileError
 from rodsim.forces.strain import strains
 from rodsim.scene.data.functions import Samples, close_period, read_samples
@@ -69,7 +69,7 @@ def bind(rod, built, folder, kept=None):
             raise FileError(f"its strain twist at t = 0 has shape {natural.shape}")
         arrays["natural"] = natural
     for i, entry in enumerate(rod.entries, start=1):
-        if isinstance(entry, StrainTable):
+        if isinstance(entry, TABLES):
             samples = _samples(entry, folder, kept, f"strain_twist_{i}")
             arrays |= _arrays(samples, f"strain_twist_{i}")
             entries.append(TableEntry(samples, entry.period))
@@ -86,22 +86,23 @@ def check_reach(rod, entries, spacing, segments, end):
     for i, (entry, given) in enumerate(zip(entries, rod.entries, strict=True)):
         if not isinstance(entry, TableEntry):
             continue
+        key = ("strain_twist", i) if given.component is None else ("strain_twist", "table")
         s, t = entry.samples.s, entry.samples.t
         low, high = s[0] - 0.5 * (s[1] - s[0]), s[-1] + 0.5 * (s[-1] - s[-2])
         if low > first or high < last:
             reach = f"its s go from {s[0]:.6g} to {s[-1]:.6g}"
             needs = f"the rod's segments from {first:.6g} to {last:.6g}"
-            yield ("strain_twist", i), f"{reach}, {needs}"
+            yield key, f"{reach}, {needs}"
         if t is not None and given.period is None and (t[0] > 0.0 or t[-1] < end):
             reach = f"its times go from {t[0]:.6g} to {t[-1]:.6g}, the run from 0 to {end:.6g}"
-            yield ("strain_twist", i), f"{reach}: give period: where it repeats itself"
+            yield key, f"{reach}: give period: where it repeats itself"
 
 
 def _samples(entry, folder, kept, name):
     if kept is not None and f"{name}_s" in kept:
         return Samples(kept[f"{name}_s"], kept.get(f"{name}_t"), kept[f"{name}_values"])
     path = find_file(entry.table, folder)
-    samples = read_samples(path, entry.columns)
+    samples = read_samples(path, entry.columns, entry.component)
     return samples if entry.period is None else close_period(samples, entry.period, path)
 
 

@@ -13,11 +13,12 @@ from typing import Any
 import numpy as np
 
 from rodsim.analysis.energy import PARTS
-from rodsim.analysis.swimming import swimming_velocity
-from rodsim.case import Expression, ExpressionError
+from rodsim.analysis.periods import period_of
+from rodsim.analysis.swimming import mean_rate, swimming_velocity
 from rodsim.errors import FileError, SweepError, UsageError
 from rodsim.files import replacing
 from rodsim.output import open_trajectory
+from rodsim.sweep.measured import Measured
 from rodsim.sweep.plan import Plan, Run
 from rodsim.sweep.standing import standing
 from rodsim.sweep.work import last_line
@@ -46,16 +47,19 @@ class Summary:
 
     ``period`` : expression in the parameters; the speed is then that over whole periods after the
     first, otherwise that over the whole run. ``reference`` : an output file; the error is then the
-    largest distance of a point from where it is there, at the end of both.
+    largest distance of a point from where it is there, at the end of both. ``measures`` : names of
+    quantities, see :mod:`rodsim.analysis.measures`, that make further columns.
     """
 
     plan: Plan
     period: str | None = None
     reference: Any = None
+    measures: tuple[str, ...] = ()
     rows: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     def __post_init__(self):
         self._next = 0.0
+        self._measured = Measured(self.measures, self.plan)
         self._reference = _last_frame(self.reference) if self.reference else None
         for run in self.plan.runs:
             _period(self.period, run)  # a wrong expression shows before the runs, not after
@@ -64,19 +68,26 @@ class Summary:
     @property
     def columns(self) -> list[str]:
         """Names of the columns."""
-        return ["run", *self.plan.key_units, *RESULTS]
+        results = list(RESULTS)
+        place = results.index("error")
+        results[place:place] = self._measured.columns
+        return ["run", *self.plan.key_units, *results]
 
     def head(self, column: str) -> str:
         """Return the head of a column, with its unit."""
-        unit = self.plan.key_units.get(column, "")
+        unit = self.plan.key_units.get(column, self._measured.columns.get(column, ""))
         if column in RESULTS:
             unit = unit_text(RESULTS[column], self.plan.runs[0].data["units"])
         return f"{column} ({unit})" if unit not in ("", "1") else column
 
     def column(self, name: str) -> str:
-        """Return the column that a name stands for, ``parameters.b`` or just ``b``."""
-        found = [c for c in self.columns if name in (c, c.rpartition(".")[2])]
-        if len(found) != 1:
+        """Return the column that a name stands for, ``parameters.b`` or its end, ``b``."""
+        if name in self.columns:
+            return name
+        found = [c for c in self.columns if c.endswith(f".{name}")]
+        if len(found) > 1:
+            raise UsageError(f"column {name}: say which, {' or '.join(found)}")
+        if not found:
             raise UsageError(f"no column {name}: there is {', '.join(self.columns)}")
         return found[0]
 
@@ -84,8 +95,11 @@ class Summary:
         """Read a run anew; ``failure`` is why its command could not do it. Returns its row."""
         status = standing(run)
         row = {"run": run.name, **run.values, "status": "failed" if failure else status}
-        if status not in ("waiting", "running"):  # of what goes on the numbers are half-way
-            row |= self._results(run)
+        try:
+            if status not in ("waiting", "running"):  # of what goes on the numbers are half-way
+                row |= self._results(run)
+        except UsageError as error:  # of a quantity of the user's own: the runs go on
+            row["message"] = str(error)
         if failure or status == "diverged":
             row["message"] = failure or last_line(run.log, "diverged in step")
         self.rows[run.name] = row
@@ -101,11 +115,13 @@ class Summary:
                 if name in RESULTS
             }
             energies["elastic_energy"] = sum(energies[f"{part}_energy"] for part in PARTS)
-            velocity = _velocity(output, _period(self.period, run))
+            period = _period(self.period, run)
+            velocity = _velocity(output, period)
+            measured = self._measured.of(output, period)
             cost = {k: v for k, v in output.runtime.items() if k in RESULTS}
             error = self._error(output)
             time = float(output.time[-1])
-        return {"time": time, **velocity, **energies, **error, **cost}
+        return {"time": time, **velocity, **energies, **measured, **error, **cost}
 
     def _error(self, output):
         if self._reference is None:
@@ -164,7 +180,9 @@ class Summary:
     def text(self) -> str:
         """Return the most important columns as aligned text."""
         present = set().union(*self.rows.values())
-        columns = [c for c in (*self.plan.key_units, *SHOWN) if c in present]
+        shown = [c for c in SHOWN if c not in self._measured.columns]
+        columns = [*self.plan.key_units, *shown[:-1], *self._measured.columns, shown[-1]]
+        columns = [c for c in columns if c in present]
         cells = [[self.head(c) for c in columns]]
         cells += [[_short(row.get(c, "")) for c in columns] for row in self.rows.values()]
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
@@ -180,7 +198,7 @@ def _velocity(output, period):
         velocity = (
             swimming_velocity(output.time, output.position, period)
             if period
-            else np.polyfit(output.time, output.position.mean(axis=1), 1)[0]
+            else mean_rate(output.time, output.position.mean(axis=1))
         )
     except UsageError:  # stopped or diverged before the second period was whole
         return {}
@@ -190,15 +208,7 @@ def _velocity(output, period):
 
 def _period(text, run):
     """Return the period of a run, or None where none is given."""
-    if text is None:
-        return None
-    try:
-        value = float(Expression(text, run.data["parameters"])(np.zeros(()), 0.0))
-    except ExpressionError as error:
-        raise UsageError(f"--period {text}: {error}") from error
-    if not 0.0 < value < np.inf:
-        raise UsageError(f"--period {text}: is {value:g} for the run {run.name}: must be > 0")
-    return value
+    return text and period_of(text, run.data["parameters"], f" for the run {run.name}")
 
 
 def _last_frame(path):

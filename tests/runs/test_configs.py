@@ -106,6 +106,16 @@ def test_two_flagella_swim_and_part_as_their_header_says(tmp_path):
 
 
 @pytest.mark.compiled
+def test_the_tapered_flagellum_swims_as_its_header_says(tmp_path):
+    for taper, speed in ((), -3.52), (("--set", "parameters.tip=1"), -7.11):
+        with run("tapered_flagellum", tmp_path, *taper, "--overwrite") as trajectory:
+            period = 2 * np.pi / 300
+            velocity = swimming_velocity(trajectory.time, trajectory.position, period)
+            assert velocity[2] == pytest.approx(speed, abs=0.01)
+            assert not trajectory.position[..., 0].any()  # planar
+
+
+@pytest.mark.compiled
 def test_the_carpet_moves_as_its_header_says(tmp_path):
     with run("carpet", tmp_path) as trajectory:
         assert [rod.name for rod in trajectory.rods] == [f"flagellum_{i}" for i in range(10)]
@@ -205,7 +215,7 @@ def test_the_tethered_pair_bends_as_its_header_says(tmp_path):
 def test_every_config_is_tested_here():
     assert {path.stem for path in CONFIGS.glob("*.yaml")} == {
         "open_rod", "open_rod_half_twist", "closed_ring", "closed_ring_low_twist", "flagellum",
-        "two_flagella", "carpet",
+        "two_flagella", "tapered_flagellum", "carpet",
         "plasmid", "traced_filament",
         "sedimenting_fibre", "fibre_in_shear", "tethered_pair",
         "swimmer_at_wall", "fibre_settling_on_wall",

@@ -139,7 +139,7 @@ def test_info_says_how_the_rods_start(write):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("kind", ["natural", "table", "curve"])
+@pytest.mark.parametrize("kind", ["natural", "table", "tables", "curve"])
 def test_a_run_goes_on_without_its_data_and_with_the_same_bits(write, tmp_path, kind):
     """What the strain twist was made from is in the output: tables may be gone by then."""
     angle = 2 * np.pi * np.arange(50) / 50
@@ -147,10 +147,17 @@ def test_a_run_goes_on_without_its_data_and_with_the_same_bits(write, tmp_path, 
     s, t = np.linspace(0, 6, 30), np.linspace(0, 1e-3, 9)
     values = 1 + 0.3 * np.sin(3 * s[:, None] - 4000 * t)
     np.savetxt("k.csv", np.vstack([np.r_[0.0, t], np.c_[s, values]]), delimiter=",")
+    rows = [
+        [a, b, value, 0.3 * a, 0.1]
+        for a, some in zip(s, values, strict=True)
+        for b, value in zip(t, some, strict=True)
+    ]
+    np.savetxt("k3.csv", rows, delimiter=",")
     curve = "{kind: curve, path: ring.csv, points: 23, closed: true, turns: 1}"
     loop, strain = {
         "natural": (LOOP, '["natural_1 + 0.5*sin(4000*t)", natural_2, natural_3]'),
         "table": (LOOP, "[{table: k.csv}, 0, 0.1]"),
+        "tables": (LOOP, "{table: k3.csv}"),
         "curve": (curve, '[natural_1, "0.5*natural_2", "0.1*cos(3000*t)"]'),
     }[kind]
     case = write(loop=loop, strain=strain, end=1e-3)
@@ -159,7 +166,7 @@ def test_a_run_goes_on_without_its_data_and_with_the_same_bits(write, tmp_path, 
     stops = iter(["", "", "a test"])
     with pytest.raises(rodsim.errors.StoppedError):
         rodsim.simulate(rodsim.load_case(case), "part.h5", stop=lambda: next(stops, "a test"))
-    for name in ("ring.csv", "k.csv"):
+    for name in ("ring.csv", "k.csv", "k3.csv"):
         (tmp_path / name).unlink()
     assert command("resume", "part.h5").exit_code == 0
     with rodsim.open_trajectory("whole.h5") as whole, rodsim.open_trajectory("part.h5") as part:
@@ -193,6 +200,33 @@ def test_a_traced_wave_moves_a_rod_as_the_formula_does(write):
             moved = abs(ends[-1] - run.position[0, :17]).max()
     assert moved > 0.05
     assert abs(ends[1] - ends[0]).max() < 2e-4 * moved
+
+
+@pytest.mark.compiled
+def test_one_table_of_three_moves_a_rod_as_three_tables_do(write):
+    s, t = np.linspace(0, 6, 30), np.linspace(0, 1e-3, 9)
+    waves = [(1 - 0.4 * i) * np.sin((2 + i) * s[:, None] - 900 * t) for i in range(3)]
+    for i, wave in enumerate(waves):
+        np.savetxt(f"k{i}.csv", np.vstack([np.r_[0.0, t], np.c_[s, wave]]), delimiter=",")
+    pairs = np.stack(np.broadcast_arrays(s[:, None], t, *waves), axis=-1).reshape(-1, 5)
+    np.savetxt("all.csv", pairs, delimiter=",", header="s,t,k1,k2,k3", comments="")
+    ends = []
+    for strain in (
+        "[{table: k0.csv}, {table: k1.csv}, {table: k2.csv}]",
+        "{table: all.csv}",
+        "[{table: all.csv, columns: [s, t, k1]}, {table: k1.csv}, {table: k2.csv}]",
+    ):
+        result = command("run", write(strain=strain, end=5e-4), "-o", "out.h5", "--overwrite")
+        assert result.exit_code == 0, result.stderr
+        with rodsim.open_trajectory("out.h5") as run:
+            ends.append(run.position[-1])
+    assert np.array_equal(ends[0], ends[1])
+    assert np.array_equal(ends[0], ends[2])
+    short = command("validate", write(strain="{table: all.csv}", end=2e-3))
+    assert short.exit_code == 2
+    assert short.stderr.count("its times go from 0 to 0.001") == 1
+    planar = command("validate", write(strain="{table: all.csv}"), "--set", "plane=yz")
+    assert "Omega_2 must be the number 0 where plane is yz" in planar.stderr
 
 
 @pytest.mark.compiled

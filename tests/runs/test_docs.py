@@ -16,6 +16,7 @@ SLOW = (
     "sweeps",
     "visualization",
     "data",
+    "measure",
     "wall",
     "bodies",
 )  # minutes where the machine is not quiet; and below, the tutorial

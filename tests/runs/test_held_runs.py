@@ -219,7 +219,7 @@ def test_bodies_are_drawn_where_they_are(towed, kind):
     from rodsim.plotting.shapes import set_stage
 
     with open_trajectory(towed) as run:
-        camera, shapes, _ = pictures._look(run, [0, run.frames - 1], "yz", kind, "time")
+        camera, shapes, _ = pictures._look(run, [0, run.frames - 1], "yz", kind, "time", False)
         surface = run.surfaces(run.frames - 1)
     axis = style.new_figure(3.0, 3.0).add_subplot()
     set_stage(axis, camera, shapes.bounds(camera))

@@ -9,7 +9,9 @@ from scenes import CONFIGS
 
 from rodsim import open_trajectory
 from rodsim.cli import main
+from rodsim.nodes import lay_out
 from rodsim.plotting.camera import VIEWS, make_camera
+from rodsim.plotting.directors import chosen_points, draw_directors
 from rodsim.plotting.style import nice_length, pretty_unit
 from rodsim.plotting.surface import normals, ribbon, tube
 
@@ -78,6 +80,8 @@ def uncut(monkeypatch):
         ("ring.h5", ("--view", "zy", "--style", "ribbon"), {"z (µm)", "y (µm)"}),
         ("ring.h5", ("--colour", "curvature", "--at", "1e-3"), {"t = 0.001 s", "curvature (µm⁻¹)"}),
         ("ring.h5", ("--overlay", "--frames", "2"), {"time (s)"}),
+        ("ring.h5", ("--directors",), {"D1", "D2", "t = 0 s"}),
+        ("tail.h5", ("--directors", "--overlay", "-n", "2"), {"D1", "D2", "y (µm)"}),
         ("tail.h5", (), {"z (µm)", "y (µm)", "t = 0.004 s"}),
         ("tail.h5", ("--overlay", "--colour", "twist"), {"twist (µm⁻¹)"}),
         ("ring.h5", ("-w", "energy"), {"energy (g µm² s⁻²)", "time (s)", "bending"}),
@@ -220,6 +224,30 @@ def test_tubes_and_ribbons_lie_where_the_triads_say():
     assert flat[0, 0, 0] == pytest.approx(position[0] - 0.4 * first[0])
     assert flat[0, 0, 2] == pytest.approx(position[1] + 0.4 * first[1])
     assert np.linalg.norm(normals(flat), axis=-1) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("view", ["3d", "xy"])
+def test_arrows_lie_along_the_triads(view):
+    """Seen by the camera; one that points at the viewer is a dot."""
+    from matplotlib.figure import Figure
+
+    rng = np.random.default_rng(8)
+    position = rng.normal(size=(50, 3))
+    director = np.linalg.qr(rng.normal(size=(50, 3, 3)))[0]
+    director[7] = np.eye(3)[[2, 0, 1]]  # D1 along z
+    rods = lay_out([("a", 7, False, 0.3, [1] * 6), ("b", 43, False, 0.3, [1] * 6)])
+    camera = make_camera(view, position)
+    axis = draw_directors(Figure().add_subplot(), camera, rods, position, director, 0.4)
+    nodes = [*range(7), *(7 + chosen_points(43))]
+    assert nodes[7] == 7
+    assert nodes[-1] == 49
+    assert len(nodes) == 7 + 16
+    arrows, dots = axis.collections[::2], axis.collections[1::2]
+    for i, (drawn, dot) in enumerate(zip(arrows, dots, strict=True)):
+        seen = [k for k in nodes if not (view == "xy" and i == 0 and k == 7)]
+        tips = (position + 0.4 * director[:, i]) @ camera.matrix.T
+        assert drawn.XY + np.c_[drawn.U, drawn.V] == pytest.approx(tips[seen, :2])
+        assert len(dot.get_offsets()) == len(nodes) - len(seen)
 
 
 def test_units_and_lengths_as_people_write_them():

@@ -56,6 +56,21 @@ SCENES = {
 }
 
 
+def test_the_frames_of_a_run_are_read_once(tmp_path, monkeypatch):
+    from rodsim.run import past
+
+    looks, look = [], past.whole_frames
+    monkeypatch.setattr(past, "whole_frames", lambda run: looks.append(run.path) or look(run))
+    (tmp_path / "case.yaml").write_text(PLANAR)
+    simulate(load_case(tmp_path / "case.yaml", ["time.end=1e-3"]), tmp_path / "out.h5")
+    options = ("--set", "time.end=2e-3", "-q")
+    done = CliRunner().invoke(main, ["resume", str(tmp_path / "out.h5"), *options])
+    assert done.exit_code == 0, done.output
+    with open_trajectory(tmp_path / "out.h5") as run:
+        assert (run.status, run.time[-1]) == ("finished", 2e-3)
+    assert len(looks) == 1
+
+
 class Asked(Exception):
     """Stands for whatever ends a run between two steps."""
 

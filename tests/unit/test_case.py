@@ -258,8 +258,9 @@ def test_schema_knows_the_unions_and_describes_every_key():
     assert {"exclusiveMinimum": 0, "type": ["number", "string"]} in epsilon
     bending = definitions["Moduli"]["properties"]["bending"]["oneOf"]
     assert [member["type"] for member in bending] == ["number", "string", "array"]
-    natural, triple = definitions["Rod"]["properties"]["strain_twist"]["oneOf"]
+    natural, table, triple = definitions["Rod"]["properties"]["strain_twist"]["oneOf"]
     assert natural["const"] == "natural"
+    assert table == {"$ref": "#/definitions/StrainTables"}
     entry = triple["items"][0]["oneOf"]
     assert [member.get("type") for member in entry] == ["number", "string", None]
     assert definitions["Fluid"]["required"] == ["viscosity", "epsilon"]

@@ -296,4 +296,4 @@ def test_a_gap_and_a_curve_taken_as_open_are_warned_of(build, tmp_path):
     words = " ".join(
         map(str, build("path: half.txt, closed: true, points: 300, as_is: false").warnings)
     )
-    assert "19.1 times the median distance apart: a gap, or an open curve taken as closed?" in words
+    assert "19.1 times the median distance apart: a gap, two curves, or an open one taken" in words

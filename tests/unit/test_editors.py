@@ -65,6 +65,29 @@ def test_the_schema_refuses_what_is_wrong(old, new, validator):
     assert not validator.is_valid(data_of(text.replace(old, new, 1)))
 
 
+@pytest.mark.parametrize(
+    ("more", "good"),
+    [
+        ("shape: {origin: [0, d, 0]}", True),
+        ("moduli: {bending: 2.0e-3}", True),
+        ("loads: {weight: {force: [0, 0, f]}}", True),
+        ("strain_twist: [{period: 3}, 0, 0]", True),
+        ("shape: {kind: ring, radius: 2}", True),
+        ("shape: {orign: [0, 0, 3]}", False),
+        ("shape: {points: 1}", False),
+        ("moduli: {bendin: 2.0e-3}", False),
+        ("loads: {weight: {force: [0, 0]}}", False),
+    ],
+)
+def test_a_rod_like_another_need_not_say_all(validator, more, good):
+    text = template("ring")
+    assert "time:" in text
+    rods = f"rods:\n  other: {{like: ring, {more}}}\n"
+    assert validator.is_valid(data_of(text.replace("rods:\n", rods, 1))) == good
+    alone = rods.replace("like: ring, ", "")
+    assert not validator.is_valid(data_of(text.replace("rods:\n", alone, 1)))
+
+
 @pytest.mark.parametrize(("shell", "at"), [("bash", "1"), ("zsh", "1"), ("fish", "sw")])
 def test_shells_can_complete_commands(shell, at):
     """``at`` is the number of the word to complete; for fish it is the word."""

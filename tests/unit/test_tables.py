@@ -151,6 +151,75 @@ def test_ibamr_files(tmp_path):
         read_points(tmp_path / "r.vertex", triads=True)
 
 
+@pytest.fixture
+def two_in_one(tmp_path):
+    """Three points and two, in one .vertex; returns what writes a file of segments beside it."""
+    rng = np.random.default_rng(5)
+    position = rng.normal(size=(5, 3))
+    triads = np.linalg.qr(rng.normal(size=(5, 3, 3)))[0]
+    (tmp_path / "r.vertex").write_text("5\n" + written(position, " "))
+    (tmp_path / "r.director").write_text("5\n" + written(triads.reshape(15, 3), " "))
+
+    def join(*pairs, suffix=".rod"):
+        rows = "".join(f"{a} {b} 0.3 7 7\n" for a, b in pairs)
+        (tmp_path / f"r{suffix}").write_text(f"{len(pairs)} # segments\n{rows}")
+
+    return tmp_path / "r.vertex", position, triads, join
+
+
+@pytest.mark.parametrize("suffix", [".rod", ".spring"])
+def test_of_several_ibamr_rods_one_is_chosen_by_its_number(two_in_one, suffix):
+    path, position, triads, join = two_in_one
+    assert np.array_equal(read_points(path, False).position, position)  # nothing says otherwise
+    join((0, 1), (1, 2), (2, 0), (4, 3), suffix=suffix)
+    for rod, points in ((1, slice(0, 3)), ("2", slice(3, 5))):
+        found = read_points(path, True, rod=rod)
+        assert np.array_equal(found.position, position[points])
+        assert np.array_equal(found.director, triads[points])
+        assert found.name(1).startswith(f"point 1 (line {points.start + 3})")
+    for rod in (None, 0, 3, "tail"):
+        with pytest.raises(
+            FileError, match=r"has 2 rods: .* \(1: points 0 to 2, 2: points 3 to 4\)"
+        ):
+            read_points(path, True, rod=rod)
+
+
+@pytest.mark.parametrize(
+    ("pairs", "words"),
+    [
+        ([(0, 1), (1, 2), (2, 4)], "joins points 2 and 4 of two rods"),
+        ([(0, 1), (1, 5)], r"r\.rod:3: a segment begins with two numbers from 0 to 4"),
+        ([(0, "x")], r"r\.rod:2: a segment begins"),
+    ],
+)
+def test_segments_that_cannot_be_are_refused(two_in_one, pairs, words):
+    path, _, _, join = two_in_one
+    join(*pairs)
+    with pytest.raises(FileError, match=words):
+        read_points(path, False, rod=1)
+
+
+def test_one_ibamr_curve_has_no_second_rod(two_in_one):
+    with pytest.raises(
+        FileError, match=r"is one curve, so there is no rod '2': .* r\.rod or r\.spr"
+    ):
+        read_points(two_in_one[0], False, rod=2)
+    with pytest.raises(FileError, match="has no frames"):
+        read_points(two_in_one[0], False, frame=1)
+
+
+def test_of_blocks_one_is_chosen_by_its_number(tmp_path):
+    path = tmp_path / "t.txt"
+    path.write_text(f"x y z\n{PLAIN}\n\n7 8 9\n1 2 4\n")
+    assert read_points(path, False).breaks == [3]
+    for rod, wanted in ((1, XYZ), (2, [[7, 8, 9], [1, 2, 4]])):
+        found = read_points(path, False, rod=rod)
+        assert np.array_equal(found.position, wanted)
+        assert found.breaks == []
+    with pytest.raises(FileError, match="has no block 3: rod is 1 to 2"):
+        read_points(path, False, rod=3)
+
+
 def test_triads_with_few_digits_are_made_orthonormal(tmp_path):
     rng = np.random.default_rng(4)
     triads = np.linalg.qr(rng.normal(size=(5, 3, 3)))[0]
@@ -220,6 +289,48 @@ def test_a_period_is_closed_once(tmp_path):
     path.write_text("0,0,0.1,0.2\n0,1,2,1.5\n1,3,4,3\n")
     with pytest.raises(FileError, match=r"after one period of 0\.2 its values differ by 0.5 of 4"):
         close_period(read_samples(path), 0.2, path)
+
+
+S, T = np.array([0.2, 0.5, 1.1]), np.array([0.0, 0.3])
+THREE = np.array([[1.5, -0.2, 0.7], [1.3, 0.4, 0.9], [-2.0, 0.6, 0.8]])  # over s
+
+
+def test_all_three_components_from_one_table_over_s(tmp_path):
+    path = tmp_path / "k.csv"
+    path.write_text("s,k1,k2,tau\n" + written(np.c_[S, THREE], ","))
+    for i in range(3):
+        samples = read_samples(path, component=i)
+        assert samples.t is None
+        assert np.array_equal(samples.s, S)
+        assert np.array_equal(samples.values, THREE[:, i])
+    assert np.array_equal(read_samples(path, ["s", "tau", "k1", "k2"], 0).values, THREE[:, 2])
+    path.write_text(written(np.c_[S, S, THREE, S], ","))
+    with pytest.raises(FileError, match="has 6 columns: all three components are four"):
+        read_samples(path, component=0)
+    assert np.array_equal(read_samples(path, [1, 3, 4, 5], 2).values, THREE[:, 2])
+
+
+def test_all_three_components_from_one_table_over_s_and_t(tmp_path):
+    """A row for each pair, in any order, blank lines between blocks or not."""
+    path = tmp_path / "k.txt"
+    rows = [[s, t, *(three * (1 + 2 * t))] for t in T for s, three in zip(S, THREE, strict=True)]
+    path.write_text(written(rows[:3], " ") + "\n\n" + written(rows[3:][::-1], " "))
+    for i in range(3):
+        samples = read_samples(path, component=i)
+        assert np.array_equal(samples.s, S)
+        assert np.array_equal(samples.t, T)
+        assert np.allclose(samples.values, THREE[:, i, None] * (1 + 2 * T), rtol=1e-15, atol=0)
+    one = read_samples(path, [1, 2, 4])
+    assert np.array_equal(one.values, read_samples(path, component=1).values)
+    path.write_text(written(rows[:5], " "))
+    with pytest.raises(FileError, match=r"has no row for s = 1\.1, t = 0\.3"):
+        read_samples(path, component=0)
+    path.write_text(written([*rows, rows[1]], " "))
+    with pytest.raises(FileError, match=r"k\.txt:2: s = 0\.5, t = 0 is there 2 times"):
+        read_samples(path, component=0)
+    path.write_text(written(rows[:3], " "))
+    with pytest.raises(FileError, match="has 3 s and 1 times"):
+        read_samples(path, component=0)
 
 
 READERS = (

@@ -20,32 +20,84 @@ class Samples:
     values: np.ndarray
 
 
-def read_samples(path, columns=None) -> Samples:
+def read_samples(path, columns=None, component: int | None = None) -> Samples:
     """Return the samples in a table; raises FileError.
 
-    Two columns, or the two ``columns`` that are named: s and the values. More: the first row has
+    columns : names or numbers of s and the value, or of s, t and the value: a row for each pair of
+    s and t, in any order. Without them two columns are s and the value; of more, the first row has
     the times, the first column s, and what stands in their corner does not count.
+    component : 0, 1, 2 of a table of all three: ``columns`` are those of s, t where there is one,
+    and the three; by default all of a table of four, or five.
     """
-    table = read_table(path, corner=columns is None)
-    if columns is not None or table.width == 2:
-        chosen = [0, 1] if columns is None else [find(table, name) for name in columns]
-        s, values = table.floats(chosen).T
-        t, rows = None, 0
-    elif table.width < 2 or table.names:
+    table = read_table(path, corner=columns is None and component is None)
+    chosen = _chosen(table, columns, component)
+    if chosen is None:
+        return _grid(table)
+    values = table.floats(chosen)
+    if len(chosen) == 3:
+        return _gathered(table, *values.T)
+    s, value = values.T
+    _check_increase(table, s, 0)
+    return Samples(s.copy(), None, value.copy())
+
+
+def _chosen(table, columns, component):
+    """Return the columns of s, t where there is one, and the value; None for a grid."""
+    found = None if columns is None else [find(table, name) for name in columns]
+    if component is None:
+        return [0, 1] if found is None and table.width == 2 else found
+    if found is None:
+        if table.width not in (4, 5):
+            raise FileError(
+                f"{table.path}: has {table.width} columns: all three components are four, s and "
+                "Omega_1 to Omega_3, or five, s, t and those; else write columns: [s, k1, k2, k3]"
+            )
+        found = list(range(table.width))
+    return [*found[:-3], found[component - 3]]
+
+
+def _grid(table):
+    """Return the samples of a table whose first row has the times and whose first column s."""
+    if table.width < 2 or table.names:
         raise FileError(
-            f"{path}: has {table.width} columns: over s it has two (or columns: [s, name]); "
+            f"{table.path}: has {table.width} columns: over s it has two (or columns: [s, name]); "
             "over s and t its first row has the times"
         )
-    else:
-        whole = table.floats(list(range(table.width)))
-        s, t, values, rows = whole[1:, 0], whole[0, 1:], whole[1:, 1:], 1
-        if len(t) < 2 or not (np.diff(t) > 0.0).all():
-            raise FileError(f"{path}: the times in its first row must increase")
-    steps = np.diff(s)
-    if len(s) < 2 or not (steps > 0.0).all():
-        k = int(np.argmin(steps > 0.0)) + 1 + rows if len(s) > 1 else 0
-        raise table.fault(min(k, len(table.rows) - 1), "s must increase from row to row")
+    whole = table.floats(list(range(table.width)))
+    s, t, values = whole[1:, 0], whole[0, 1:], whole[1:, 1:]
+    if len(t) < 2 or not (np.diff(t) > 0.0).all():
+        raise FileError(f"{table.path}: the times in its first row must increase")
+    _check_increase(table, s, 1)
     return Samples(s.copy(), t, values.copy())
+
+
+def _gathered(table, s, t, value):
+    """Return the samples of a table with a row for each pair of s and t."""
+    (along, k), (times, j) = np.unique(s, return_inverse=True), np.unique(t, return_inverse=True)
+    if len(along) < 2 or len(times) < 2:
+        raise FileError(
+            f"{table.path}: has {len(along)} s and {len(times)} times: needs two of each"
+        )
+    values, rows = (
+        np.full((len(along), len(times)), np.nan),
+        np.zeros((len(along), len(times)), int),
+    )
+    np.add.at(rows, (k, j), 1)
+    if rows.max() > 1:
+        at = int(np.argmax(rows[k, j] > 1))
+        raise table.fault(at, f"s = {s[at]:g}, t = {t[at]:g} is there {rows[k[at], j[at]]} times")
+    values[k, j] = value
+    if not rows.all():
+        i, m = np.argwhere(rows == 0)[0]
+        raise FileError(f"{table.path}: has no row for s = {along[i]:g}, t = {times[m]:g}")
+    return Samples(along, times, values)
+
+
+def _check_increase(table, s, before):
+    """Raise FileError where s does not increase from row to row; ``before``: rows above them."""
+    if len(s) < 2 or not (np.diff(s) > 0.0).all():
+        k = int(np.argmin(np.diff(s) > 0.0)) + 1 + before if len(s) > 1 else 0
+        raise table.fault(min(k, len(table.rows) - 1), "s must increase from row to row")
 
 
 def close_period(samples: Samples, period: float, path) -> Samples:

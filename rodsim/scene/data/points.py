@@ -12,6 +12,7 @@ import numpy as np
 from rodsim.case.words import did_you_mean, one_of
 from rodsim.errors import FileError
 from rodsim.scene.data.columns import find, has, position_columns, triad_columns, unit_of
+from rodsim.scene.data.ibamr import read_ibamr
 from rodsim.scene.data.text import TextTable, lines_of, read_table, split
 
 MOST_BYTES = 2**33  # of an array in an .npz, unpacked
@@ -44,13 +45,17 @@ def read_points(path, triads, columns=None, frame=None, rod=None) -> Points:
     """Return the points in a file; raises FileError.
 
     ``triads``: whether they are needed. ``columns``: of a text table. ``frame``: number of the
-    frame, where there are several, by default the last; ``rod``: name of the rod, likewise.
+    frame, where there are several, by default the last; ``rod``: name of the rod, likewise, or its
+    number from 1 on where rods have none.
     """
-    suffix = path.suffix.lower()
+    suffix, rod = path.suffix.lower(), None if rod is None else str(rod)
     if suffix == ".npz":
         return _from_npz(path, triads, frame, rod)
     if suffix in (".vertex", ".director"):
-        return _from_ibamr(path, triads)
+        if frame is not None:
+            raise FileError(f"{path}: has no frames to choose one from")
+        position, director, lines = read_ibamr(path, triads, rod)
+        return Points(path, position, director, lines=lines)
     if suffix == ".xyz":
         table, frame = _xyz(path, frame), None
     else:
@@ -77,11 +82,21 @@ def _one_rod(table, frame, rod):
     if has(table, "rod"):
         values = table.texts(find(table, "rod"))
         table = table.select(np.flatnonzero(values == _which(values, rod, table.path)))
+    elif rod is not None and table.breaks:
+        table = _block(table, rod)
     elif rod is not None:
         raise FileError(f"{table.path}: has no column 'rod' to choose one from")
     own = all(has(table, name) for name in ("frame", "rod", "point", "s"))
     arc = table.floats([find(table, "s")])[:, 0] if own else ()
     return table, float(arc[1]) if len(arc) > 1 and arc[1] > 0.0 else None
+
+
+def _block(table, rod):
+    """Return the rows of one of the blocks that blank lines separate."""
+    ends = [0, *table.breaks, len(table.rows)]
+    if not (rod.isdecimal() and 1 <= int(rod) < len(ends)):
+        raise FileError(f"{table.path}: has no block {rod}: rod is 1 to {len(ends) - 1}")
+    return table.select(np.arange(*ends[int(rod) - 1 : int(rod) + 1])).whole()
 
 
 def _pick(known, frame, path):
@@ -129,39 +144,6 @@ def _xyz(path, frame):
     more = max(len(split(row, None)) for row in rows) - 4 if rows else 0
     table.names, table.width = ("name", "x", "y", "z", *("-",) * more), 4 + more
     return table
-
-
-def _from_ibamr(path, triads):
-    """Read IBAMR's .vertex, and its .director beside it: a count, then rows of three numbers."""
-    position, lines = _counted(path.with_suffix(".vertex"), 1)
-    points = Points(path, position, lines=lines)
-    if triads:
-        points.director = _counted(path.with_suffix(".director"), 3)[0].reshape(-1, 3, 3)
-        if len(points.director) != len(position):
-            count = len(points.director)
-            raise FileError(f"{path}: {len(position)} points have {count} triads beside them")
-    return points
-
-
-def _counted(path, rows_each):
-    lines = lines_of(path) if path.is_file() else None
-    if lines is None:
-        raise FileError(f"{path}: no such file: a .vertex file needs its .director beside it")
-    content = [(k, row.split("#")[0].strip()) for k, row in enumerate(lines, 1)]
-    content = [(k, row) for k, row in content if row]
-    count = content[0][1].split()[0] if content else ""
-    if not count.isdecimal():
-        raise FileError(f"{path}: begins with no count")
-    rows = content[1 : 1 + int(count) * rows_each]
-    if len(rows) != int(count) * rows_each or len(content) != len(rows) + 1:
-        raise FileError(
-            f"{path}: says {count}, so needs {int(count) * rows_each} rows; has {len(content) - 1}"
-        )
-    table = TextTable(path, [row for _, row in rows], [k for k, _ in rows], width=3)
-    for k, row in enumerate(table.rows):
-        if len(row.split()) != 3:
-            raise table.fault(k, f"has {len(row.split())} numbers, needs 3")
-    return table.floats([0, 1, 2]), table.numbers
 
 
 def _from_npz(path, triads, frame, rod):

@@ -8,7 +8,7 @@ by commas. Memory is of the file's size.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -66,6 +66,10 @@ class TextTable:
         rows, numbers = ([values[k] for k in keep] for values in (self.rows, self.numbers))
         breaks = np.flatnonzero(np.isin(keep, self.breaks)).tolist()
         return TextTable(self.path, rows, numbers, self.names, self.delimiter, self.width, breaks)
+
+    def whole(self) -> TextTable:
+        """Return the table without its breaks."""
+        return replace(self, breaks=[])
 
     def label(self, column: int) -> str:
         """Return what a column is called in a message."""
