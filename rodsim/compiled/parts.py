@@ -52,7 +52,8 @@ class Part:
     series : those beyond the ones of every scene, (name, shape, dimension) each. labels : of those
     with several rows, and of gauges, by name: whose each row is.
     pressure : called with (points (3, T), sources (3, N), loads (6, N), t, left), returns its share
-    of the pressure (T,); left: its fixed numbers with what the evaluation of the loads left there.
+    of the pressure (T,); left: the numbers that it shares with a part that holds, as the
+    evaluation of the loads has left them, else None.
     sums : sums that it calls, ``module:name`` each, whose addresses are put into the first places
     of ``fixed`` (an address is a whole number that float64 holds exactly).
     gauges : what it leaves in the last places of ``fixed``. Parts of a scene that
