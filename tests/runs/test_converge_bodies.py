@@ -23,6 +23,7 @@ time: {end: 0.05, tolerance: 1.0e-3}
 """
 
 
+@pytest.mark.long
 def test_errors_fall_with_the_points_of_bodies(tmp_path):
     (tmp_path / "case.yaml").write_text(CASE)
     report = tmp_path / "report"

@@ -235,6 +235,7 @@ def test_bodies_are_drawn_where_they_are(towed, kind):
     assert (high > seen.max(axis=0)).all()
 
 
+@pytest.mark.long
 def test_movies_and_flow_pictures_of_bodies_are_written(towed, tmp_path):
     pytest.importorskip("matplotlib")
     grid = "0.1,-1:2:9,-1:3:9"
