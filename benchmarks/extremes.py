@@ -136,6 +136,46 @@ def at_wall(base, heights, turn, **changes):
     } | {path.replace("__", "."): value for path, value in changes.items()})  # fmt: skip
 
 
+def crossing(force, apart=1.2):
+    """The rod and another across it, ``apart`` contact diameters off, pressed onto each other in
+    their middles with so many of a/d^2; contact holds against 30."""
+    diameter = 1.213 * 0.47
+    shape = {"kind": "straight", "points": POINTS, "length": LENGTH}
+    push = force * 3.5e-3 / diameter**2
+    loads = [{"push": {"s": 0.5 * LENGTH, "force": [f, 0, 0]}} for f in (push, -push)]
+    turned = {"axis": [1, 0, 0], "degrees": 90}
+    origin = [apart * diameter, 0.5 * LENGTH, 0.5 * LENGTH]
+    return changed(ROD, {
+        "rods.rod.shape": shape, "rods.rod.strain_twist": [0, 0, 0], "rods.rod.loads": loads[0],
+        "rods.other": {**ROD["rods"]["rod"], "strain_twist": [0, 0, 0], "loads": loads[1],
+                       "shape": {**shape, "rotate": turned, "origin": origin}},
+        "contact": {},
+    })  # fmt: skip
+
+
+def plectoneme(points, epsilons, diameter):
+    """A ring with four times the twist at which it buckles, epsilon in spacings."""
+    twist = ["0.05*sin(2*s/2.5)", "0.05*cos(3*s/2.5)", 2.7713]
+    return changed(RING, {
+        "rods.ring.shape": {"kind": "ring", "radius": 2.5, "points": points},
+        "rods.ring.strain_twist": twist, "contact": {"diameter": diameter},
+        "fluid.epsilon": {"spacings": epsilons}, "time.end": 0.02,
+    })  # fmt: skip
+
+
+def trefoil(diameter):
+    """A trefoil knot of length 20 with the linking number -3; an ideal one has 16.4 diameters."""
+    c, u = 0.62699, "(2 + cos(3*u))"
+    return changed(RING, {
+        "rods.ring.shape": {
+            "kind": "curve", "closed": True, "points": 120, "from": 0, "to": 2 * math.pi,
+            "position": [f"{c}*{u}*cos(2*u)", f"{c}*{u}*sin(2*u)", f"{c}*sin(3*u)"], "turns": 1,
+        },
+        "rods.ring.strain_twist": [0, 0, 0], "contact": {"diameter": diameter},
+        "fluid.epsilon": 0.4, "time.end": 0.05,
+    })  # fmt: skip
+
+
 def ring_twist(omega_r0):
     """A ring with total intrinsic twist 2 pi omega_r0; unstable above about 1.7345."""
     seeded = ["1e-3*cos(0.8*s)", 0, omega_r0 / 2.5]
@@ -222,6 +262,15 @@ SCENES = {
         "falling on it, 1000 of its own bending forces": at_wall(ROD, 3, -80, rods__rod__loads={
             "weight": {"along": "all", "force": [0, 0, -1000 * 3.5e-3 / LENGTH**3]}}),
         "flagellum, 2 epsilon above": at_wall(TAIL, 2, -90),
+    },
+    "contact": {
+        **{f"across each other, pressed with {n} a/d^2": crossing(n) for n in (1, 10, 20, 60)},
+        "starting 0.7 diameters apart": crossing(0.1, 0.7),
+        "starting 0.4 diameters apart": crossing(0.1, 0.4),
+        "plectoneme, epsilon = ds": plectoneme(100, 1, 0.4),
+        "plectoneme, epsilon = 4 ds": plectoneme(100, 4, 0.6),
+        "trefoil, d = L/33": trefoil(0.6),
+        "trefoil, tight, d = L/18": trefoil(1.1),
     },
     "ring": {"just below its instability": ring_twist(1.70),
              "just above it": ring_twist(1.80)},

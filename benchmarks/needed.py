@@ -26,6 +26,7 @@ PARTS = {
     "loads: a follower, driven": "rods.ring.loads={w: {s: 0.3, force: [0, 0, '-1e-4*cos(t)'],"
                                  " frame: triad}}",
     "tethers: one": "tethers={t: {from: {rod: ring, s: 0.3}, to: [3, 0, 0], stiffness: 1e-4}}",
+    "contact: nothing touches": "contact={}",
     "fluid.flow: a shear": "fluid.flow=['2.3*z', 0, 0]",
     "fluid.flow: sin, exp, t": "fluid.flow=['sin(2.3*z + t)*exp(-y**2)', 0, 0]",
 }  # fmt: skip
@@ -160,7 +161,8 @@ def frame(points, path, fields):
     machine = Machine(case, scene, force=True)
     snapshot = capture(machine, Recorder(machine, time.perf_counter(), 0.0), scene.initial)
     writer = TrajectoryWriter.create(path, plan_output(case, scene, snapshot))
-    content = machine.system.observe(scene.initial)
+    fields, observables = machine.system.observe(scene.initial)
+    content = fields, observables | machine.gap.measure(scene.initial)
     return lambda: writer.write_frame(0, 0, *content)
 
 

@@ -9,7 +9,7 @@ from figures.runs import Workplace
 
 from rodsim.compiled.settings import prepare
 
-FIGURES = ("fig2", "fig3", "fig4", "fig5", "table3", "fig6")
+FIGURES = ("fig2", "fig3", "fig4", "late", "fig5", "table3", "fig6")
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
@@ -32,7 +32,7 @@ FIGURES = ("fig2", "fig3", "fig4", "fig5", "table3", "fig6")
     help="Longest time for a run by the gIB method; default 90, quick 1.",
 )
 def main(names, quick, folder, gib_minutes):
-    """Reproduce FIGUREs (fig2 fig3 fig4 fig5 table3 fig6; default: all).
+    """Reproduce FIGUREs (fig2 fig3 fig4 late fig5 table3 fig6; default: all).
 
     For each a picture, the data as CSV, and rows of a table "paper says / we get / agrees", which
     is printed and written to table.md. A run whose output is in FOLDER/runs is not repeated.
@@ -50,12 +50,13 @@ def main(names, quick, folder, gib_minutes):
 
 def reproduce(names, place):
     """Return the rows of some figures; pictures and data go to ``place``."""
-    from figures import open_rod, ring, swimming, table_3
+    from figures import late_ring, open_rod, ring, swimming, table_3
 
     makers = {
         "fig2": open_rod.figure_2,
         "fig3": open_rod.figure_3,
         "fig4": ring.figure_4,
+        "late": late_ring.late_ring,
         "fig5": ring.figure_5,
         "table3": table_3.table_3,
         "fig6": swimming.figure_6,

@@ -51,6 +51,8 @@ SECTIONS = {
     "CurveShape": "rods.NAME.shape, kind: curve",
     "Rotate": "rods.NAME.shape.rotate",
     "Tether": "tethers.NAME",
+    "Contact": "contact",
+    "Epsilons": "contact.diameter with epsilons",
     "OnRod": "an end of a tether on a rod",
     "OnBody": "an end of a tether on a body",
     "Body": "bodies.NAME",

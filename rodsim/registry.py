@@ -18,6 +18,7 @@ KINDS = (
     "rodsim.forces.elastic",
     "rodsim.forces.loads",
     "rodsim.forces.tethers",
+    "rodsim.forces.contact",
     "rodsim.blocks.build",
     "rodsim.blocks.build:START",
     "rodsim.blocks.build:END",

@@ -97,3 +97,14 @@ def gap(X, counts, closed, excluded):
                 d = X[j] - X[i]
                 smallest = min(smallest, np.sqrt(d[0] ** 2 + d[1] ** 2 + d[2] ** 2))
     return smallest
+
+
+def pairs_that_count(X, rods, excluded):
+    """Distance of every two points that are no neighbours along a rod, by their numbers i < j."""
+    rod = np.repeat(np.arange(len(rods)), rods.count)
+    number = np.concatenate([np.arange(count) for count in rods.count])
+    apart = abs(number[:, None] - number)
+    round_about = np.where(rods.closed, rods.count, 10**9)[rod][:, None] - apart
+    counts = (rod[:, None] != rod) | (np.minimum(apart, round_about) > excluded[rod][:, None])
+    distance = np.linalg.norm(X[:, None] - X, axis=2)
+    return {(i, j): distance[i, j] for i, j in np.argwhere(np.triu(counts, 1)).tolist()}

@@ -13,6 +13,7 @@ from rodsim.commands.groups import (
 )
 from rodsim.commands.held import describe_held
 from rodsim.commands.stored_case import describe_stored
+from rodsim.commands.touching import describe_contact, describe_links
 from rodsim.errors import FileError
 from rodsim.run.ending import Motion, gap_sentence
 from rodsim.run.recorder import frame_times
@@ -49,6 +50,8 @@ def describe_case(case, refuse=False, threads=None) -> str:
     lines += describe_start(scene, machine.system, unit.names)
     if scene.wall is not None:
         lines.append(describe_wall(scene, unit.length))
+    if scene.parts.apart:
+        lines.append(describe_contact(scene, case.contact, unit.length))
     if scene.planar:
         lines.append("planar: only u_y, u_z and w_x are computed")
     if scene.parts.external:
@@ -194,6 +197,7 @@ def describe_output(path) -> str:
             f"written by rodsim {run.version}, {run.created}; format {run.format}",
         ]
         lines += describe_stored(run)
+        lines += describe_links(run)
         lines += _endings(run)
         for name in run.bodies:
             kept = run.body(name)

@@ -37,6 +37,35 @@ class Gauge:
 
 
 @dataclass(frozen=True)
+class Guard:
+    """What a part asks of every step.
+
+    share : called with the displacements (3, N) of a step, returns how much it takes of what a step
+    may do. Beyond 1 an adaptive method makes the step smaller, a run of fixed steps stops.
+    beyond : what a share beyond 1 is, in words.
+    breach : called with the state at the end of a step, returns what makes it meaningless, the
+    usual cause with what to do, and the change of the case for it, or None.
+    """
+
+    share: Callable
+    beyond: str
+    breach: Callable
+
+
+@dataclass(frozen=True)
+class Apart:
+    """How far a part keeps rods apart.
+
+    diameter : distance of centrelines at which they touch. excluded (R,) : how many segments apart
+    points of a rod are still neighbours. itself : whether it keeps a rod from itself too.
+    """
+
+    diameter: float
+    excluded: np.ndarray
+    itself: bool
+
+
+@dataclass(frozen=True)
 class Part:
     """One part of a scene: its kernel and its numbers.
 
@@ -61,6 +90,8 @@ class Part:
     report : called with (fixed, rates, state), its numbers after an evaluation and its gauges'
     rates where they are known better than from there, else None; returns observables by name, and
     what the force and torque (6,) about the origin are beyond those of that evaluation.
+    guard, apart : what it asks of steps, how far it keeps rods apart, if it does.
+    warnings : Problems of the case that do not stop a run.
     """
 
     name: str
@@ -78,6 +109,9 @@ class Part:
     sums: tuple[str, ...] = ()
     gauges: tuple[Gauge, ...] = ()
     report: Callable | None = None
+    guard: Guard | None = None
+    apart: Apart | None = None
+    warnings: tuple = ()
 
     @property
     def where(self) -> str:
@@ -114,6 +148,16 @@ class PartList(tuple):
     def working(self) -> list[str]:
         """Names of the parts whose work is counted, in the order of their accounts."""
         return [part.name for part in self if part.works]
+
+    @property
+    def guards(self) -> list[Guard]:
+        """What its parts ask of steps."""
+        return [part.guard for part in self if part.guard]
+
+    @property
+    def apart(self) -> Apart | None:
+        """How far rods are kept apart, or None where nothing does."""
+        return next((part.apart for part in self if part.apart), None)
 
     @property
     def gauges(self) -> list[Gauge]:

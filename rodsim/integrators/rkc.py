@@ -26,6 +26,7 @@ SAFETY = 0.8
 FILTER = 4.0  # b of the filter H211b: larger is smoother
 MOST_GROWTH = 3.0
 RATE_SAFETY = 1.1  # the estimate comes from below
+MOST_SHARE = 0.9  # of what the parts let a step do: the next one is made for that
 FEWEST_STAGES = 4  # with fewer, nonlinear terms have an error constant of their own
 MOST_TRAVEL = 1.0  # of the strain twist in a step: 1.4 rad of a wave
 REFRESH = 25  # accepted steps between estimates of the fastest rate
@@ -35,6 +36,14 @@ MOST_STAGES = 2000  # rounding grows as s^2 and is then still below 1e-9 of the 
 def stages_for(size: float, rho: float) -> int:
     """Return the number of stages that makes a step of ``size`` stable at rate ``rho``."""
     return max(FEWEST_STAGES, 1 + int(math.sqrt(1.54 * size * rho + 1.0)))
+
+
+def _shrunk(error: float, share: float) -> float:
+    """Return the factor on the size of a step that erred, or took more than its share."""
+    if not (math.isfinite(error) and math.isfinite(share)):
+        return 0.1
+    by_error = SAFETY * error**-0.25 if error > 1.0 else 1.0
+    return max(0.1, min(by_error, MOST_SHARE / share if share > 1.0 else 1.0))
 
 
 @lru_cache(maxsize=256)
@@ -178,12 +187,14 @@ class RKC:
         while True:
             size = self._followed(state, self._limited(end - state.time), end)
             y, f1, velocities, error = self.attempt(state, f0, size)
-            if error <= 1.0:
+            share = self.system.guarded(y)
+            if error <= 1.0 and share <= 1.0:
                 self._grow(size, error)
+                self._size = min(self._size, size * MOST_SHARE / max(share, 1e-10))
                 return size, y, f1, velocities
             self.rejected += 1
             self._previous = None
-            self._size = size * (max(0.1, SAFETY * error**-0.25) if math.isfinite(error) else 0.1)
+            self._size = size * _shrunk(error, share)
             if not self._size > 1e-13 * end:
                 raise StepFailure(f"no step is accepted, down to a size of {self._size:.2g}", state)
             self._estimate_rate(state, f0)

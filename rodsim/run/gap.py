@@ -1,7 +1,8 @@
 """How close the rods of a run come to each other and to themselves: measured at frames, said once.
 
-Nothing but the fluid keeps rods apart. In the model they never cross, but below their thickness it
-says nothing true of rods that touch, and errors of time and space can carry them through.
+Without contact nothing but the fluid keeps rods apart. In the model they never cross, but below
+their thickness it says nothing true of rods that touch, and errors of time and space can carry them
+through.
 """
 
 import math
@@ -12,7 +13,7 @@ from rodsim.run.ending import gap_sentence
 from rodsim.scene.at_wall import mirror_gap
 from rodsim.scene.bodies import deepest_point
 from rodsim.scene.gap import closest_pair
-from rodsim.scene.neighbours import any_pair_counts, excluded, hydrodynamic_diameter
+from rodsim.scene.neighbours import any_pair_counts, diameter, excluded
 
 
 class Gap:
@@ -23,7 +24,7 @@ class Gap:
 
     def __init__(self, scene, units: dict):
         self.scene, self.units, self.notify = scene, units, warnings.warn
-        self.diameter = hydrodynamic_diameter(scene.blob, scene.epsilon)
+        self.diameter = diameter(scene)
         self.smallest, self.time = math.inf, math.nan
         rods = scene.rods
         self._rods = rods.first, rods.count, rods.closed, excluded(scene)
@@ -41,7 +42,8 @@ class Gap:
             mirrored, rod, point = mirror_gap(self.scene, state.position)
             if mirrored < distance:
                 distance, first, second, who = mirrored, rod, point, self._at_wall
-        if distance < self.diameter <= self.smallest:
+        below = distance < self.diameter <= self.smallest
+        if below and not self._kept_apart(who, first, second):
             self.notify(self._warning(who(first, second), distance, state.time))
         if distance < self.smallest:
             self.smallest, self.time = distance, state.time
@@ -72,6 +74,13 @@ class Gap:
         """Return how small it got, or an empty text."""
         return gap_sentence(self.smallest, self.time, self.diameter, self.units)
 
+    def _kept_apart(self, who, first, second):
+        """Tell whether contact keeps apart what comes near: then it is no news that it touches."""
+        apart, locate = self.scene.parts.apart, self.scene.rods.locate
+        if apart is None:
+            return False
+        return apart.itself or who == self._at_wall or locate(first)[0] != locate(second)[0]
+
     def _at_wall(self, rod, point):
         return f"rod '{rod}' comes closer to the wall than its radius: its point {point} and image"
 
@@ -87,6 +96,6 @@ class Gap:
         length, unit = self.units["length"], self.units["time"]
         return (
             f"{who} are {distance:.3g} {length} apart at t = {time:.6g} {unit}; to the fluid a rod "
-            f"is {self.diameter:.3g} {length} thick. Nothing but the fluid keeps rods apart, and "
-            "below that the model does not hold for rods that touch (docs/method.md)"
+            f"is {self.diameter:.3g} {length} thick. Nothing but the fluid keeps them apart, and "
+            "below that the model does not hold for rods that touch: contact: {}, docs/contact.md"
         )

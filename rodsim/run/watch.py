@@ -53,7 +53,8 @@ class Watch:
         """``fastest``: the FastestRate that follows the rate of a fixed step, or None."""
         self.system, self._command = system, case.source.command
         self.output = DEFAULT_OUTPUT  # what the command of a remedy writes
-        fixed = not integrator.method.adaptive
+        self._fixed = fixed = not integrator.method.adaptive
+        self._guards = system.scene.parts.guards
         self.remedy = (_fixed_step_remedy if fixed else _adaptive_remedy)(case, system)
         self._rates = RateWatch(system, integrator, fastest) if fixed and fastest else None
         self.wall, self.floor = system.scene.wall, system.scene.floor
@@ -83,6 +84,7 @@ class Watch:
         if within and not self._below_wall(state):
             if self._rates:
                 self._rates.follow(step)
+            self._ask_guards(step)
             return
         for name, values in (("position", state.position), ("director", state.director)):
             finite = np.isfinite(values).reshape(-1, values.shape[-1]).all(axis=0)
@@ -97,6 +99,16 @@ class Watch:
         if distance.max() > self.farthest:
             what = f"position has left all bounds, {distance.max():.3g} from the start"
             self._stop(step.number, step.start, what, int(distance.argmax()))
+
+    def _ask_guards(self, step):
+        """Raise DivergedError where a step or its end is not what the parts can follow."""
+        for guard in self._guards:
+            breach = guard.breach(step.end)
+            if breach:
+                what, *remedy = breach
+                self._stop(step.number, step.start, what, None, remedy)
+            if self._fixed and guard.share(self.system.split(step.increment)[0]) > 1.0:
+                self._stop(step.number, step.start, guard.beyond, None)
 
     def _below_wall(self, state):
         if self.wall is None:
@@ -138,14 +150,14 @@ class Watch:
         """Raise DivergedError for a step that the integrator could not make."""
         self._stop(number, failure.state, str(failure), None)
 
-    def _stop(self, number: int, before: State, what: str, point: int | None) -> None:
+    def _stop(self, number: int, before: State, what: str, point: int | None, remedy=None) -> None:
         turned = self.system.diagnose(before)
         if turned >= 0:
             point, what = turned, "the triad is a half-turn away from the next one"
         place = ""
         if point is not None:
             place = f", {self.system.scene.name_of(point)}"
-        cause, change = self.remedy
+        cause, change = remedy or self.remedy
         raise DivergedError(
             f"diverged in step {number}, after t = {before.time:.6g}{place}: {what}.\n"
             f"Last good frame: {self.last_good_frame}. Usual cause: {cause}.\n"

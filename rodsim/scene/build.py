@@ -74,7 +74,9 @@ def build_scene(case, stored=None) -> Scene:
     scene = replace(scene, warnings=(*scene.warnings, *seen))
     if stored is None:
         _refuse_coincident(case, scene)
-    return with_parts(scene, [part for kind in kinds() for part in kind.build(case, scene)])
+    scene = with_parts(scene, [part for kind in kinds() for part in kind.build(case, scene)])
+    told = [problem for part in scene.parts for problem in part.warnings]
+    return replace(scene, warnings=(*scene.warnings, *told))
 
 
 def with_parts(scene: Scene, parts) -> Scene:

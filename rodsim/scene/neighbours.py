@@ -2,7 +2,8 @@
 
 Two points count if they are of different rods, or of one rod and further apart along it than
 pi/2 diameters: a circle of that diameter has them opposite each other, so a rod bent no tighter
-than its own thickness does not touch itself with points that are nearer than that.
+than its own thickness does not touch itself with points that are nearer than that. Where rods are
+kept apart, by contact, that says how thick they are and who is a neighbour.
 """
 
 from __future__ import annotations
@@ -11,11 +12,12 @@ import math
 
 import numpy as np
 
+from rodsim.forces.near import pairs_within, segments_within
+
 # A line of blobs drags the fluid along as a cylinder of radius e^(-1/2) epsilon does (algebraic7;
 # e^(-1) epsilon for algebraic9), along the axis and across it: slender-body theory.
 DIAMETERS = {"algebraic7": 2.0 * math.exp(-0.5), "algebraic9": 2.0 * math.exp(-1.0)}  # / epsilon
 COINCIDENT = 1e-6  # spacings
-DIRECTION = np.array([0.4837592014, 0.6180339887, 0.6197138255])  # along nothing in particular
 
 
 def hydrodynamic_diameter(blob: str, epsilon: float) -> float:
@@ -23,15 +25,22 @@ def hydrodynamic_diameter(blob: str, epsilon: float) -> float:
     return DIAMETERS[blob] * epsilon
 
 
+def diameter(scene) -> float:
+    """Return how thick the rods of a scene are: to each other, or else to the fluid."""
+    apart = scene.parts.apart
+    return apart.diameter if apart else hydrodynamic_diameter(scene.blob, scene.epsilon)
+
+
 def excluded(scene) -> np.ndarray:
     """Return (R,) how many segments apart points of each rod are still neighbours.
 
-    floor(pi d / (2 ds)), d the hydrodynamic diameter; no more than the rod has points.
+    floor(pi d / (2 ds)), d the hydrodynamic diameter, or as contact has it; no more than the rod
+    has points.
     """
-    rods = scene.rods
+    if scene.parts.apart:
+        return scene.parts.apart.excluded
     reach = 0.5 * np.pi * hydrodynamic_diameter(scene.blob, scene.epsilon)
-    segments = np.floor(reach / rods.spacing)
-    return np.minimum(segments, rods.count).astype(np.int64)
+    return segments_within(reach, scene.rods)
 
 
 def any_pair_counts(scene) -> bool:
@@ -42,32 +51,14 @@ def any_pair_counts(scene) -> bool:
 
 
 def coincident(scene) -> tuple[int, int] | None:
-    """Return two points of the initial state that count and lie on each other, or None.
+    """Return the first two points of the initial state that count and lie on each other, or None.
 
-    That is within 1e-6 of the smallest spacing. Points are sorted along a direction that is
-    parallel to nothing, so that only those next to each other there have to be looked at.
+    That is within 1e-6 of the smallest spacing.
     """
-    position = scene.initial.position[:, : scene.rods.points]
     limit = COINCIDENT * scene.rods.spacing.min()
-    along = DIRECTION @ position
-    order = np.argsort(along, kind="stable")
-    for step in range(1, len(order)):
-        near = along[order[step:]] - along[order[:-step]] <= limit
-        if not near.any():
-            return None
-        first, second = np.sort([order[:-step][near], order[step:][near]], axis=0)
-        distance = np.linalg.norm(position[:, first] - position[:, second], axis=0)
-        found = (distance <= limit) & _count(scene, first, second)
-        if found.any():
-            which = np.flatnonzero(found)[np.argmin(first[found])]
-            return int(first[which]), int(second[which])
-    return None
-
-
-def _count(scene, first, second):
-    """Tell which pairs count; ``first`` < ``second``."""
-    rods = scene.rods
-    r, other = (np.searchsorted(rods.first, points, "right") - 1 for points in (first, second))
-    apart = second - first
-    apart = np.where(rods.closed[r], np.minimum(apart, rods.count[r] - apart), apart)
-    return (r != other) | (apart > excluded(scene)[r])
+    found = pairs_within(scene.initial.position, scene.rods, excluded(scene), limit)
+    first, second, _ = found
+    if not len(first):
+        return None
+    which = int(np.argmin(first))
+    return int(first[which]), int(second[which])

@@ -8,6 +8,7 @@ import numpy as np
 
 from rodsim.case import Case, case_from_mapping
 from rodsim.errors import CaseError, FileError
+from rodsim.forces.contact import contact_diameter
 from rodsim.scene.bodies import stored_nodes
 from rodsim.scene.build import build_scene, epsilon_of
 from rodsim.scene.neighbours import hydrodynamic_diameter
@@ -47,8 +48,11 @@ def restore_case(run) -> Case:
 
 
 def stored_diameter(run, case: Case) -> float:
-    """Return how thick the rods of a stored run are to the fluid."""
-    return hydrodynamic_diameter(case.fluid.blob, epsilon_of(case, run.rods)[0])
+    """Return how thick the rods of a stored run are: to each other, or else to the fluid."""
+    epsilon = epsilon_of(case, run.rods)[0]
+    if case.contact is not None:
+        return contact_diameter(case.contact, case.fluid.blob, epsilon)
+    return hydrodynamic_diameter(case.fluid.blob, epsilon)
 
 
 def stored_state(run, frame: int, ledger: int = 0) -> State:

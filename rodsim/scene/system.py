@@ -34,6 +34,7 @@ class RodSystem:
         self.rod_size, self._tracers_end = 6 * n, 6 * n + 3 * p
         self.size = self._tracers_end + scene.ledger
         self.observe = Observer(scene)
+        self._guards = scene.parts.guards
         self.evaluations = 0
         self.seconds = 0.0
         self._shape = (6, n)
@@ -70,6 +71,13 @@ class RodSystem:
         tracers, over the length of the longest rod. The ledger does not count.
         """
         return largest_rms(change, self.weights, *self._groups)
+
+    def guarded(self, increment: np.ndarray) -> float:
+        """Return how much a step takes of what the parts let it do; 0 where none asks for that."""
+        if not self._guards:
+            return 0.0
+        shift = self.split(increment)[0]
+        return max(guard.share(shift) for guard in self._guards)
 
     def rate(self, t: float, base: State, y: np.ndarray, out: np.ndarray) -> np.ndarray:
         """Write dy/dt at increments ``y`` from ``base`` at time ``t`` into ``out``, return it."""

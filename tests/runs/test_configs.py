@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from acting import of_part
 from click.testing import CliRunner
 from scenes import CONFIGS
 
@@ -10,6 +11,8 @@ from rodsim.analysis.helix import fit_helix
 from rodsim.analysis.swimming import swimming_velocity
 from rodsim.analysis.topology import twist, writhe
 from rodsim.cli import main
+from rodsim.scene.restore import restore_scene, stored_state
+from rodsim.scene.system import RodSystem
 
 PERIOD = 2 * np.pi / 400
 
@@ -212,11 +215,38 @@ def test_the_tethered_pair_bends_as_its_header_says(tmp_path):
         assert x[-1, :41, 1].mean() == pytest.approx(-x[-1, 41:, 1].mean(), rel=1e-6)
 
 
+@pytest.mark.compiled
+def test_the_plectoneme_winds_up_as_its_header_says(tmp_path):
+    with run("plectoneme", tmp_path) as trajectory:
+        energy, gap = total(trajectory), trajectory.observable("gap")
+        assert energy[[0, -1]] == pytest.approx([0.2156, 0.0996], rel=1e-2)
+        assert trajectory.observable("contact_energy")[-1, 0] == pytest.approx(8.2e-4, rel=2e-2)
+        assert gap[-1] == pytest.approx(0.3515, rel=1e-2)
+        X, D = trajectory.position[-1], trajectory.director[-1]
+        assert writhe(X) == pytest.approx(-4.09, rel=1e-2)
+        assert writhe(X) + twist(X, D) == pytest.approx(0, abs=1e-9)
+
+
+@pytest.mark.compiled
+def test_the_crossing_rods_hold_each_other_as_their_header_says(tmp_path):
+    with run("two_rods_crossing", tmp_path) as trajectory:
+        gap = trajectory.observable("gap")
+        assert gap[-1] == pytest.approx(0.3437, rel=2e-3)
+        stored = trajectory.observable("contact_energy")[-1]
+        assert stored.sum() == pytest.approx(4.09e-5, rel=1e-2)
+        assert total(trajectory)[-1] == pytest.approx(0.00861, rel=5e-3)
+        scene = restore_scene(trajectory)
+        push, _ = of_part(RodSystem(scene), "contact", stored_state(trajectory, -1, scene.ledger))
+    # It carries what pulls at the two ends of either rod.
+    assert push[:3, :61].sum(axis=1) == pytest.approx([0, 0, -8.0e-3], abs=1e-5)
+
+
 def test_every_config_is_tested_here():
     assert {path.stem for path in CONFIGS.glob("*.yaml")} == {
         "open_rod", "open_rod_half_twist", "closed_ring", "closed_ring_low_twist", "flagellum",
         "two_flagella", "tapered_flagellum", "carpet",
         "plasmid", "traced_filament",
         "sedimenting_fibre", "fibre_in_shear", "tethered_pair",
+        "plectoneme", "two_rods_crossing",
         "swimmer_at_wall", "fibre_settling_on_wall",
     }  # fmt: skip

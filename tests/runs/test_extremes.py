@@ -38,6 +38,10 @@ FINISHED = [
     ("at a wall", "0.66 epsilon above"),
     ("at a wall", "0.1 epsilon above"),
     ("at a wall", "falling on it, 1000 of its own bending forces"),
+    ("contact", "across each other, pressed with 10 a/d^2"),
+    ("contact", "starting 0.7 diameters apart"),
+    pytest.param("contact", "plectoneme, epsilon = ds", marks=pytest.mark.long),
+    pytest.param("contact", "trefoil, tight, d = L/18", marks=pytest.mark.long),
     ("long", "rod, 100 times the time"),
 ]
 
@@ -60,6 +64,8 @@ def test_finishes_near_its_reference(group, scene):
     [
         ("rest state", "Omega ds = 2.001", "refused", "abs(Omega) ds = 2.001"),
         ("starts", "a triad turned by 180 degrees", "refused", "points 19 and 20 are a half-turn"),
+        ("contact", "starting 0.4 diameters apart", "refused", "cannot start inside each other"),
+        ("contact", "across each other, pressed with 60 a/d^2", "stopped", "has grown to"),
         ("starts", "all triads turned by 179 degrees", "stopped", "fastest rate has grown to"),
     ],
 )

@@ -7,6 +7,7 @@ from twins import gap
 
 from rodsim.case import load_case
 from rodsim.errors import CaseError
+from rodsim.forces import near
 from rodsim.scene import neighbours
 from rodsim.scene.build import build_scene
 from rodsim.scene.gap import closest_pair
@@ -95,7 +96,7 @@ def test_points_of_two_rods_in_one_place_are_refused(tmp_path, angle):
 
 
 def test_near_is_not_in_one_place(tmp_path):
-    across = np.cross(neighbours.DIRECTION, [0.0, 0.0, 1.0])  # the same place in the sorted order
+    across = np.cross(near.DIRECTION, [0.0, 0.0, 1.0])  # the same place in the sorted order
     for x, y, _ in (1e-5 * across, 0.5 * across):
         found = scene(tmp_path, b=LINE.replace("}", f", origin: [{x:.17f}, {y:.17f}, 0]}}"))
         assert neighbours.coincident(found) is None

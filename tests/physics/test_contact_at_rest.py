@@ -1,0 +1,91 @@
+"""Rings and knots that come to rest in contact: digits of another program, topology, theory."""
+
+import numpy as np
+import pytest
+from extremes import trefoil
+from scenes import end_of, final_state
+
+from rodsim.analysis.topology import twist, writhe
+from rodsim.forces.elastic import ENERGIES
+
+pytestmark = pytest.mark.compiled
+NONE = "contact=null"
+EPSILON = "fluid.epsilon=0.314"
+
+
+def contact(strength, diameter=0.381, exclusion=0.6):
+    return f"contact={{diameter: {diameter}, strength: {strength}, exclusion: {exclusion}}}"
+
+
+def seen_at(state, system):
+    """Return elastic energy, contact energy, writhe, linking number of a ring."""
+    seen = system.observe(state)[1]
+    X, D = state.position.T, state.director.transpose(2, 0, 1)
+    elastic = sum(seen[name].sum() for name in ENERGIES)
+    wound = writhe(X)
+    return elastic, seen.get("contact_energy", np.zeros(1)).sum(), wound, wound + twist(X, D)
+
+
+def test_strands_pass_through_each_other_without_contact_and_not_with_it():
+    """100 points, epsilon of 2 spacings: passages are errors of space, at a tolerance of 1e-4."""
+    coarse = "rods.ring.shape.points=100", "time.end=0.03", EPSILON
+    for change, passed in ((NONE, True), (contact(20), False)):
+        state, system, _ = final_state("plectoneme", *coarse, change)
+        link = seen_at(state, system)[3]
+        assert link == pytest.approx(round(link), abs=1e-9)
+        assert (abs(link) > 1.0) == passed
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("strength", "gap", "elastic", "wound"),
+    [(5, 0.865, 0.09723, -4.188), (20, 0.922, 0.09952, -4.092), (80, 0.956, 0.10074, -4.042)],
+)
+def test_how_a_plectoneme_depends_on_the_strength(strength, gap, elastic, wound):
+    """Digits of another program; 1 %, since the smallest changes lead to other shapes at rest."""
+    from rodsim.scene.gap import closest_pair
+    from rodsim.scene.neighbours import excluded
+
+    state, system, _ = final_state("plectoneme", EPSILON, contact(strength))
+    found = seen_at(state, system)
+    rods = system.scene.rods
+    tables = rods.first, rods.count, rods.closed, excluded(system.scene)
+    assert closest_pair(state.position, *tables)[0] / 0.381 == pytest.approx(gap, rel=1e-2)
+    assert found[0] == pytest.approx(elastic, rel=1e-2)
+    assert found[2] == pytest.approx(wound, rel=1e-2)
+    assert found[3] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("changes", "digits"),
+    [
+        ((EPSILON, contact(20.0683)), (0.006622044, 1.6247e-6, -1.40179)),
+        (("contact={}",), (0.0066221208, 1.62859e-6, -1.401767)),
+    ],
+)
+def test_the_ring_of_the_paper_comes_to_rest_with_the_digits_of_another_program(changes, digits):
+    state, system, _ = final_state("closed_ring", "time.end=1", *changes)
+    elastic, stored, wound, link = seen_at(state, system)
+    assert elastic == pytest.approx(digits[0], rel=1e-6)
+    assert stored == pytest.approx(digits[1], rel=1e-4)
+    assert wound == pytest.approx(digits[2], rel=1e-5)
+    assert link == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.long
+def test_a_trefoil_becomes_a_circle_covered_twice():
+    """E -> 8 pi^2 a/L for thin rods, from above (Gerlach, Reiter & von der Mosel 2017)."""
+    shares = []
+    for diameter, epsilon in ((0.6, 1 / 3), (0.3, 1 / 6)):
+        case = trefoil(diameter)
+        case["rods"]["ring"]["shape"]["points"] = 240
+        case["fluid"]["epsilon"], case["time"]["end"] = epsilon, 0.3
+        state, system = end_of(case)
+        elastic, _, wound, link = seen_at(state, system)
+        assert link == pytest.approx(-3.0, abs=1e-6)
+        shares.append(elastic * 20.0 / (8.0 * np.pi**2 * 3.5e-3))
+        if diameter == 0.6:
+            assert wound == pytest.approx(-3.0667, rel=1e-4)
+    assert shares[0] == pytest.approx(1.0776, rel=1e-3)
+    assert 1.0 < shares[1] < shares[0]
