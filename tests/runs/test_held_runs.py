@@ -110,10 +110,12 @@ def test_a_later_end_and_more_fields_keep_what_is_there(whole, tmp_path):
         before = {name: run.observable(name) for name in run.observables}
         bodies = run.bodies and run.of_bodies("position")
         rotors, frames = run.of_rotors(), run.frames
-    resume(copy, overrides=["time.end=1.4e-3"])
+    more = "output.fields=[position, director, velocity, force]"
+    resume(copy, overrides=["time.end=1.4e-3", more])
     with open_trajectory(copy) as run:
         assert run.time[-1] == pytest.approx(1.4e-3)
         assert verify(run) == []
+        assert abs(run.read("force", frames - 1)).max() > 0.0
         for name, values in before.items():
             assert np.array_equal(run.observable(name)[:frames], values)
         assert np.array_equal(run.of_rotors()[:frames], rotors)
