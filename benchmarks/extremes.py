@@ -59,7 +59,7 @@ def changed(base, changes):
         if value is None:
             node.pop(last, None)
         else:
-            node[last] = value
+            node[last] = copy.deepcopy(value)
     return case
 
 
@@ -206,6 +206,26 @@ def sheared(times):
     })  # fmt: skip
 
 
+def swimming(radius=1.0, start=None, base=None):
+    """The rod on a motor, 100 turns a second, of a sphere of 50 points; more words of its start."""
+    motor = {"hold": "clamped", "to": "head", "motor": {"rate": 628.0}}
+    return changed(base or ROD, {
+        "bodies": {"head": {"shape": {"kind": "sphere", "radius": radius, "points": 50}}},
+        "rods.rod.shape.origin": [0, 0, radius], "rods.rod.start": {**motor, **(start or {})},
+    })  # fmt: skip
+
+
+def hooked(stiffer):
+    """The same behind a hook, so many times as stiff as a segment of the rod."""
+    return swimming(start={"hook": {"bending": stiffer * 3.5e-3 / SPACING}})
+
+
+def close_bodies(gap):
+    """The same, and another sphere ``gap`` radii beside the first that is pushed onto it."""
+    shape = {"kind": "sphere", "radius": 1.0, "points": 50, "origin": [2.0 + gap, 0, 0]}
+    return changed(swimming(), {"bodies.other": {"shape": shape, "force": [-1e-2, 0, 0]}})
+
+
 POWERS = (-3, -2, -1, 1, 2, 3, 4)
 SPACING = LENGTH / (POINTS - 1)
 SCENES = {
@@ -279,6 +299,17 @@ SCENES = {
         **{f"follower, f L^2/B = {n}": followed(n * 3.5e-3 / LENGTH**2) for n in (30, 300, 3000)},
         "follower, 300, turning at 6e4 rad/s": followed(300 * 3.5e-3 / LENGTH**2, 6e4),
         **{f"shear, {n} times the threshold": sheared(n) for n in (3, 30, 300)},
+    },
+    "held": {
+        "clamped at one end": rod(rods__rod__start={"hold": "clamped"}),
+        "clamped at both ends": rod(rods__rod__start={"hold": "clamped"},
+                                    rods__rod__end={"hold": "clamped"}),
+        "on a motor of a body": swimming(),
+        "a light body, moduli x 1e2": swimming(0.2, base=stiffer(100.0)),
+        "motor, 2.5e3 rad/s": swimming(start={"motor": {"rate": 2.5e3}}),
+        "motor, 6.28e4 rad/s": swimming(start={"motor": {"rate": 6.28e4}}),
+        **{f"hook, {n} times a segment": hooked(n) for n in (1, 100, 10_000)},
+        "two bodies 0.05 radii apart": close_bodies(0.05),
     },
     "long": {"rod, 100 times the time": rod(time__end=0.1),
              "ring, 100 times the time": changed(RING, {"time.end": 5.0})},

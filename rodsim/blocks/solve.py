@@ -21,6 +21,7 @@ from rodsim.blocks.frames import (
     turned,
     turned_back,
 )
+from rodsim.blocks.motions import subtract_motions
 from rodsim.compiled.flags import call_sum, summed, unsigned
 
 CONVERGED = 1e-20  # of the first residual, squared
@@ -302,6 +303,16 @@ def solve(fixed, position, w):
 
 
 @unsigned
+def _take_off_motions(fixed, x):
+    """x -= K G^T x: P takes it to 0, but only to rounding, and it is what rounding grows with."""
+    y = np.zeros(int(fixed[f.COLUMNS]))
+    apply_G_transposed(fixed, x, y)
+    for b in range(int(fixed[f.BLOCKS])):
+        block = block_of(fixed, b)
+        subtract_motions(fixed, b, columns_of(y, block), part_of(x, block))
+
+
+@unsigned
 def _conjugate_gradients(fixed, position, w, L):
     """Add d to L = G Q; the first residual is -(v - k + A G Q - K N^-1 Q)."""
     residual, z, p, Ap = np.empty(L.size), np.empty(L.size), np.empty(L.size), np.empty(L.size)
@@ -312,6 +323,7 @@ def _conjugate_gradients(fixed, position, w, L):
     rates = np.empty(Q.size)
     apply_inverse(fixed, Q, rates)
     _add_line_rates(fixed, rates, residual)
+    _take_off_motions(fixed, residual)
     apply_P(fixed, residual, z)
     p[:] = z
     rz = dot(residual, z)
@@ -325,6 +337,7 @@ def _conjugate_gradients(fixed, position, w, L):
         for i in range(L.size):
             L[i] += step * p[i]
             residual[i] -= step * Ap[i]
+        _take_off_motions(fixed, residual)
         apply_P(fixed, residual, z)
         before, rz = rz, dot(residual, z)
         for i in range(L.size):

@@ -81,6 +81,9 @@ class Helix(Placed):
     pitch: NotZero = quantity("length", "rise per turn; negative is left-handed")
     points: OpenPoints = Field(description="number of points")
     length: Positive = quantity("length", "arc length")
+    taper: Positive | None = quantity(
+        "length", "starts on its axis: the radius grows as 1 - exp(-(z/taper)^2)", default=None
+    )
 
 
 class Sine(Placed):

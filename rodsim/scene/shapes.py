@@ -38,6 +38,8 @@ def helix(shape):
 
     With these triads its own strain twist is (curvature, 0, torsion).
     """
+    if shape.taper is not None:
+        return _tapered_helix(shape)
     rise = shape.pitch / (2.0 * np.pi)
     stride = np.hypot(shape.radius, rise)  # arc length per radian
     angle = np.arange(shape.points) * shape.ds / stride
@@ -46,6 +48,37 @@ def helix(shape):
     tangent = np.array([-shape.radius * sin, shape.radius * cos, rise * one]) / stride
     outward = np.array([cos, sin, 0.0 * one])
     return position, np.array([np.cross(outward, tangent, axis=0), outward, tangent])
+
+
+def _tapered_helix(shape):
+    """A helix that starts on its axis: its radius is R(z) = radius (1 - exp(-(z/taper)^2)).
+
+    D^2 is the direction outwards made normal to the tangent, as of the plain helix, which it
+    becomes beyond a few tapers.
+    """
+    k, taper = 2.0 * np.pi / abs(shape.pitch), shape.taper
+
+    def radius(x):
+        return -shape.radius * np.expm1(-((x / taper) ** 2))
+
+    def growth(x):
+        return 2.0 * shape.radius * x / taper**2 * np.exp(-((x / taper) ** 2))
+
+    def speed(x):
+        return np.sqrt(1.0 + growth(x) ** 2 + (k * radius(x)) ** 2)
+
+    target = np.arange(shape.points) * shape.ds
+    cell = min(abs(shape.pitch) / 16.0, taper / 4.0)
+    edges = np.arange(int(np.ceil(target[-1] / cell)) + 2) * cell
+    x = equal_arcs(speed, edges, target, max(target[-1], cell))
+    cos, sin, zero, one = np.cos(k * x), np.sin(k * x), np.zeros_like(x), np.ones_like(x)
+    outward, around = np.array([cos, sin, zero]), np.array([-sin, cos, zero])
+    up = np.array([zero, zero, np.copysign(one, shape.pitch)])
+    position = radius(x) * outward + x * up
+    tangent = (growth(x) * outward + k * radius(x) * around + up) / speed(x)
+    first = np.cross(outward, tangent, axis=0)
+    first /= np.linalg.norm(first, axis=0)
+    return position, np.array([first, np.cross(tangent, first, axis=0), tangent])
 
 
 def sine(shape):

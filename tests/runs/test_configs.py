@@ -241,6 +241,67 @@ def test_the_crossing_rods_hold_each_other_as_their_header_says(tmp_path):
     assert push[:3, :61].sum(axis=1) == pytest.approx([0, 0, -8.0e-3], abs=1e-5)
 
 
+def mean_rate(trajectory, name, begin, end):
+    """Return the mean over a time of what an observable is the integral of."""
+    first, last = (abs(trajectory.time - t).argmin() for t in (begin, end))
+    value = trajectory.observable(name)
+    return (value[last] - value[first]) / (trajectory.time[last] - trajectory.time[first])
+
+
+@pytest.mark.compiled
+def test_the_bacterium_swims_as_its_header_says(tmp_path):
+    """Speed along its own axis, not along its helical path; its motor turns against its cell."""
+    with run("bacterium", tmp_path) as trajectory:
+        frames = slice(abs(trajectory.time - 0.02).argmin(), None)
+        w, x, y, z = trajectory.of_bodies("orientation", frames)[:, 0].T
+        axis = np.array([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)]).T
+        step = np.diff(trajectory.of_bodies("position", frames)[:, 0], axis=0)
+        speed = (step * axis[:-1]).sum() / 0.03
+        assert speed == pytest.approx(8.80, abs=0.02)
+        torque = trajectory.observable("motor_work")[-1] - trajectory.observable("motor_work")[20]
+        assert torque / (0.03 * 200 * np.pi) == pytest.approx(7.37e-4, rel=3e-3)
+        spin = (trajectory.of_bodies("angular_velocity", frames)[:, 0] * axis).sum(axis=1).mean()
+        assert spin / (2 * np.pi) == pytest.approx(27.2, abs=0.2)
+        energy = total(trajectory) + trajectory.observable("hook_energy").sum(axis=1)
+        ledger = trajectory.observable("external_work") - trajectory.observable("dissipated")
+        lost = trajectory.observable("dissipated")[-1]
+        assert energy[-1] - energy[0] == pytest.approx(ledger[-1], abs=5e-4 * lost)
+
+
+@pytest.mark.compiled
+@pytest.mark.long
+def test_two_swimmers_go_around_each_other_as_their_header_says(tmp_path):
+    with run("two_swimmers", tmp_path) as trajectory:
+        place = trajectory.of_bodies("position")
+        speed = (place[30] - place[10]) / 0.02
+        assert speed[:, 2] == pytest.approx([7.88, 7.88], abs=0.02)
+        assert speed[:, 0] == pytest.approx([5.6, -5.6], abs=0.1)
+    alone = ("--set", "bodies.two=null", "--set", "rods.second=null", "--overwrite")
+    with run("two_swimmers", tmp_path, *alone) as trajectory:
+        place = trajectory.of_bodies("position")[:, 0, 2]
+        assert (place[30] - place[10]) / 0.02 == pytest.approx(8.03, abs=0.02)
+
+
+@pytest.mark.compiled
+@pytest.mark.long
+def test_the_rotating_helix_pulls_as_its_header_says(tmp_path):
+    with run("rotating_helix", tmp_path) as trajectory:
+        scale = 97 * 0.5 * 6.3**2  # mu omega R^2
+        thrust = -mean_rate(trajectory, "anchor_impulse", 0.2, 0.3)[0, 2] / scale
+        torque = mean_rate(trajectory, "anchor_work", 0.2, 0.3) / (scale * 0.5 * 6.3)
+        assert (thrust, torque) == pytest.approx((8.98, 67.9), rel=2e-3)
+
+
+@pytest.mark.compiled
+@pytest.mark.long
+def test_the_cilium_pushes_as_its_header_says(tmp_path):
+    with run("cilium", tmp_path) as trajectory:
+        force = mean_rate(trajectory, "anchor_impulse", 0.1, 0.15)[0]
+        assert force * 1e3 == pytest.approx([0.0, -0.408, 0.628], abs=3e-3)  # pN
+        assert mean_rate(trajectory, "dissipated", 0.1, 0.15) == pytest.approx(1.98, abs=0.01)
+        assert not trajectory.position[..., 0].any()  # planar
+
+
 def test_every_config_is_tested_here():
     assert {path.stem for path in CONFIGS.glob("*.yaml")} == {
         "open_rod", "open_rod_half_twist", "closed_ring", "closed_ring_low_twist", "flagellum",
@@ -249,4 +310,5 @@ def test_every_config_is_tested_here():
         "sedimenting_fibre", "fibre_in_shear", "tethered_pair",
         "plectoneme", "two_rods_crossing",
         "swimmer_at_wall", "fibre_settling_on_wall",
+        "bacterium", "two_swimmers", "rotating_helix", "cilium",
     }  # fmt: skip

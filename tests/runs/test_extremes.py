@@ -42,6 +42,9 @@ FINISHED = [
     ("contact", "starting 0.7 diameters apart"),
     pytest.param("contact", "plectoneme, epsilon = ds", marks=pytest.mark.long),
     pytest.param("contact", "trefoil, tight, d = L/18", marks=pytest.mark.long),
+    ("held", "clamped at both ends"),
+    ("held", "hook, 100 times a segment"),
+    pytest.param("held", "two bodies 0.05 radii apart", marks=pytest.mark.long),
     ("long", "rod, 100 times the time"),
 ]
 

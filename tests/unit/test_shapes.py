@@ -76,6 +76,37 @@ def test_helix_has_its_radius_pitch_handedness_and_arc_steps(build, pitch):
     assert cosines[1:-1] == pytest.approx(1.0, abs=1e-4)
 
 
+@pytest.mark.parametrize("pitch", [1.7, -1.7])
+def test_a_tapered_helix_starts_on_its_axis(build, pitch):
+    """Its radius and handedness by formula, its arc length by the trapezoidal rule."""
+    shape = f"{{kind: helix, radius: 0.6, pitch: {pitch}, points: 201, length: 8.0, taper: 0.9}}"
+    X, D = (scene := build(shape)).initial.position, scene.initial.director
+    z = abs(X[2])
+    assert X[:, 0].tolist() == [0.0, 0.0, 0.0]
+    assert D[2, :, 0] == pytest.approx([0, 0, np.sign(pitch)])
+    assert np.hypot(X[0], X[1]) == pytest.approx(0.6 * (1 - np.exp(-((z / 0.9) ** 2))), abs=1e-14)
+    angle = np.unwrap(np.arctan2(X[1], X[0])[1:])
+    assert X[2, 1:] / angle == pytest.approx(pitch / (2 * np.pi))
+    dense = np.linspace(0.0, z[-1], 1_000_001)
+    radius, phase = 0.6 * (1 - np.exp(-((dense / 0.9) ** 2))), 2 * np.pi * dense / 1.7
+    curve = np.array([radius * np.cos(phase), radius * np.sin(phase), dense])
+    arc = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(curve, axis=1), axis=0)))
+    assert np.interp(z, dense, arc) == pytest.approx(np.arange(201) * 0.04, abs=1e-9)
+    assert triads_are_orthonormal(D)
+    tangent = np.gradient(X, axis=1)
+    cosines = np.sum(D[2] * tangent, axis=0) / np.linalg.norm(tangent, axis=0)
+    assert cosines[1:-1] == pytest.approx(1.0, abs=1e-4)
+
+
+def test_far_from_its_start_a_tapered_helix_is_the_plain_one(build):
+    """There its triads turn as steadily as those: strain twist (curvature, 0, torsion)."""
+    case = "{kind: helix, radius: 0.6, pitch: 1.7, points: 401, length: 8.0%s}"
+    tapered, plain = (build(case % more).initial for more in (", taper: 0.3", ""))
+    turn = [s.director[:, :, -1] @ s.director[:, :, -2].T for s in (tapered, plain)]
+    assert turn[0] == pytest.approx(turn[1], abs=1e-10)
+    assert np.hypot(*tapered.position[:2, -1]) == pytest.approx(0.6)
+
+
 def test_sine_has_equal_arc_steps_in_its_plane(build):
     scene = build(
         "{kind: sine, amplitude: 0.8, wavelength: 2.1, phase: 0.6, points: 401, length: 9.0}"
@@ -98,6 +129,7 @@ def test_sine_has_equal_arc_steps_in_its_plane(build):
         "{kind: straight, points: 30, length: 2.4, perturbation: 0.01}",
         "{kind: ring, radius: 1.7, points: 30, twist_perturbation: 0.7}",
         "{kind: helix, radius: 0.6, pitch: -0.9, points: 30, length: 5.0}",
+        "{kind: helix, radius: 0.6, pitch: 1.7, points: 40, length: 5.0, taper: 0.9}",
         "{kind: sine, amplitude: 0.8, wavelength: 2.1, points: 30, length: 4.0}",
         "{kind: file, path: rod.txt, spacing: 0.25, as_is: true}",
         "{kind: file, path: rod.txt, spacing: 0.25, closed: true, as_is: true}",
