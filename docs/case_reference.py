@@ -68,6 +68,7 @@ SECTIONS = {
     "Tube": "tracers.NAME as a mapping",
     "Time": "time",
     "Output": "output",
+    "Rest": "rest",
 }
 LAST = ("rotate", "origin")  # keys that all shapes share
 TAIL = """## Expressions

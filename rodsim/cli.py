@@ -22,6 +22,8 @@ COMMANDS = (  # as the help lists them
     "info",
     "run",
     "resume",
+    "rest",
+    "stability",
     "sweep",
     "converge",
     "energy",

@@ -23,7 +23,7 @@ from rodsim.blocks.words import Body, End, Motion
 from rodsim.case.expressions import Expression
 from rodsim.case.fields import Name, not_empty
 from rodsim.case.words import did_you_mean
-from rodsim.compiled.parts import FORCE, HOLD, PLACE, RELEASE, TRACERS, Part
+from rodsim.compiled.parts import FORCE, HOLD, PLACE, RELEASE, TRACERS, Part, Statics
 from rodsim.compiled.row import Entry, Row
 from rodsim.errors import CaseError
 from rodsim.registry import Kind
@@ -205,7 +205,8 @@ def _build(case, scene) -> list[Part]:
     sums = f"{sums}{blob}", f"{sums}u_{blob}"
     shared = {"row": row, "fixed": fixed, "drive": "a motion or a motor"}
     parts = [
-        Part("held", PLACE, "rodsim.blocks.frames:place_members", **shared),
+        Part("held", PLACE, "rodsim.blocks.frames:place_members", **shared,
+             statics=_statics(blocks, scene)),
         Part("held", RELEASE, "rodsim.blocks.hold:release", **shared),
         Part("held", HOLD, "rodsim.blocks.hold:hold", **shared, external=report.driven, sums=sums,
              gauges=report.gauges, report=report, series=report.series, labels=report.labels),
@@ -215,6 +216,23 @@ def _build(case, scene) -> list[Part]:
             Part("held", TRACERS, "rodsim.blocks.hold:stir", **shared, pressure=report.pressure)
         )
     return [*parts, *_body_loads(case, scene)]
+
+
+def _statics(blocks, scene) -> Statics:
+    """Return the degrees of freedom c N + k that held ends lose: places, and of clamped ones turns.
+
+    States at rest are not looked for with bodies, motors and hooks.
+    """
+    from rodsim.blocks import fields as f
+
+    members = [member for block in blocks for member in block.members]
+    if scene.bodies or any(m.joint.kind not in (f.CLAMPED, f.BALL) for m in members):
+        return Statics(refused="rest knows held ends, not bodies, motors and hooks: leave them out")
+    n, held = scene.rods.points, []
+    for member in members:
+        components = 6 if member.joint.kind == f.CLAMPED else 3
+        held += [c * n + member.node for c in range(components)]
+    return Statics(holds=tuple(held))
 
 
 def _check_finite(row, case):

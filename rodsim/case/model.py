@@ -29,6 +29,7 @@ from rodsim.case.fields import (
 )
 from rodsim.case.fluid import Fluid, Spacings
 from rodsim.case.resolved import is_driven, resolved
+from rodsim.case.rest import Rest
 from rodsim.case.rod import Moduli, Rod
 from rodsim.case.source import Source
 from rodsim.case.time import Time
@@ -36,7 +37,7 @@ from rodsim.case.unit_names import Units
 from rodsim.errors import Problem
 from rodsim.registry import with_words
 
-__all__ = ["Case", "Fluid", "Moduli", "Output", "Rod", "Spacings", "Time", "Tube"]
+__all__ = ["Case", "Fluid", "Moduli", "Output", "Rest", "Rod", "Spacings", "Time", "Tube"]
 
 DEFAULT_FRAMES = 100
 FieldName = Literal["position", "director", "velocity", "angular_velocity", "force", "torque"]
@@ -98,6 +99,7 @@ class Case(Model):
     )
     time: Time = Field(description="time and integrator")
     output: Output = Field(Output(), description="frames")
+    rest: Rest | None = Field(None, description="how `rodsim rest` looks for a state at rest")
 
     _source: Source = PrivateAttr(default_factory=Source)
     _warnings: tuple[Problem, ...] = PrivateAttr(())

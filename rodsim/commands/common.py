@@ -14,6 +14,13 @@ set_option = click.option(
     metavar="KEY=VALUE",
     help="Change the case, e.g. --set rods.ring.shape.points=100 (again for more keys).",
 )
+from_option = click.option(
+    "--from",
+    "origin",
+    type=click.Path(path_type=Path, dir_okay=False),
+    metavar="OUT.h5",
+    help="Start from the shapes of the rods in the last frame of an output.",
+)
 case_argument = click.argument("case_path", metavar="CASE.yaml", type=click.Path(path_type=Path))
 output_argument = click.argument("output", metavar="OUT.h5", type=click.Path(path_type=Path))
 threads_option = click.option(
@@ -52,6 +59,16 @@ def load(path, overrides):
     from rodsim.case import load_case
 
     return load_case(path, overrides)
+
+
+def load_from(path, overrides, origin, frame=-1):
+    """Return the validated case in a file, its rods shaped as in a frame of an output, if any."""
+    case = load(path, overrides)
+    if origin is None:
+        return case
+    from rodsim.case.starts import shapes_of
+
+    return load(path, [*overrides, *shapes_of(case, origin, frame)])
 
 
 def say(text, err=True) -> None:

@@ -6,7 +6,8 @@ import click
 
 from rodsim.commands.common import (
     case_argument,
-    load,
+    from_option,
+    load_from,
     max_wall_option,
     prepare_numba,
     say,
@@ -29,6 +30,7 @@ from rodsim.files import DEFAULT_OUTPUT
     help="Output file; one that exists is renamed to out.1.h5, ...",
 )
 @set_option
+@from_option
 @threads_option
 @max_wall_option
 @until_option
@@ -38,9 +40,11 @@ from rodsim.files import DEFAULT_OUTPUT
     "--dry-run", is_flag=True, help="Check the case and say what it would do and cost, no more."
 )
 @click.option("-q", "--quiet", is_flag=True, help="No progress and no summary.")
-def run(case_path, output, overrides, threads, max_wall, until, overwrite, force, dry_run, quiet):
+def run(
+    case_path, output, overrides, origin, threads, max_wall, until, overwrite, force, dry_run, quiet
+):
     """Run a case and write its trajectory, energies and balances to an HDF5 file."""
-    case = load(case_path, overrides)
+    case = load_from(case_path, overrides, origin)
     say_warnings(case)
     prepare_numba()
     if dry_run:

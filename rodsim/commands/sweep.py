@@ -37,9 +37,13 @@ _FILE, _FOLDER = (click.Path(path_type=Path, dir_okay=d, file_okay=not d) for d 
               help="Give the largest distance from this output, at the end, as the error.")
 @click.option("--plot", "plots", type=(str, str, _FILE), multiple=True, metavar="X Y FILE",
               help="Draw one column over another (needs rodsim[plot]).")
+@click.option("--rest", is_flag=True, help="Find states at rest instead, as rodsim rest does.")
+@click.option("--saddle", is_flag=True, help="With --rest: stay at states that are not stable.")
+@click.option("--from", "origin", metavar="previous|OUT.h5",
+              help="With --rest: start each from the rest before it, or all from an output.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress.")
 def sweep(case_path, overrides, table, folder, jobs, threads, scheduler, only_list, period,
-          measures, reference, plots, quiet):
+          measures, reference, plots, rest, saddle, origin, quiet):
     # fmt: on
     """Run a case for many values: --set KEY=[A,B,C] runs over a list, here or on a cluster.
 
@@ -51,7 +55,12 @@ def sweep(case_path, overrides, table, folder, jobs, threads, scheduler, only_li
     from rodsim.sweep.summary import Summary
     from rodsim.sweep.work import command
 
-    plan = make_plan(case_path, overrides, table, folder)
+    chained = _chained(rest, saddle, origin, scheduler)
+    plan = make_plan(case_path, overrides, table, folder, numbered=chained)
+    if rest:
+        from rodsim.sweep.rests import as_rests
+
+        plan = as_rests(plan, origin, ("--saddle",) * saddle)
     names = tuple(name.strip() for text in measures for name in text.split(","))
     summary = Summary(plan, period, reference, names)
     pictures = [(summary.column(x), summary.column(y), path) for x, y, path in plots]
@@ -67,7 +76,7 @@ def sweep(case_path, overrides, table, folder, jobs, threads, scheduler, only_li
     table_path = folder / "summary.csv"
     try:
         if left:
-            _run(left, summary, table_path, (jobs, threads, scheduler, quiet))
+            _run(left, summary, table_path, (jobs, threads, scheduler, quiet, chained))
     except KeyboardInterrupt:
         pass  # the table says what is left, the exit code too
     finally:
@@ -95,7 +104,10 @@ def _say_what_is_anew(left, summary):
 
 def _run(left, summary, table_path, options):
     """Start the engine and do what is left."""
-    jobs, threads, scheduler, quiet = options
+    jobs, threads, scheduler, quiet, chained = options
+    if chained:
+        _run_chain(left, summary, table_path, threads, quiet)
+        return
     from rodsim.sweep import engine
     from rodsim.sweep.display import make_display
 
@@ -113,6 +125,32 @@ def _run(left, summary, table_path, options):
 
         sweep = engine.Sweep(client, threads, ended, summary.update, lambda: bool(heard))
         sweep.finish(left, display)
+
+
+def _chained(rest, saddle, origin, scheduler):
+    """Tell whether each run starts from the one before; UsageError for options that do not fit."""
+    from rodsim.errors import UsageError
+
+    if not rest and (saddle or origin):
+        raise UsageError(f"{'--saddle' if saddle else '--from'} is for sweeps with --rest")
+    if origin == "previous" and scheduler:
+        raise UsageError("--from previous goes one by one, here: leave out --scheduler")
+    return origin == "previous"
+
+
+def _run_chain(left, summary, table_path, threads, quiet):
+    """Do what is left one after another, without a cluster."""
+    from rodsim.sweep.display import make_display
+    from rodsim.sweep.rests import follow
+
+    _compile(left[:1], quiet)
+    with _signals() as heard, make_display(summary, quiet) as display:
+
+        def ended(run, failure):
+            display.ended(summary.update(run, failure))
+            summary.write_now_and_then(table_path)
+
+        follow(left, threads, ended, lambda: bool(heard), display)
 
 
 def _compile(left, quiet):
@@ -155,8 +193,15 @@ def _signals():
 
 
 def _draw(summary, x, y, path):
-    from rodsim.plotting.columns import plot_columns
+    heads = summary.head(x), summary.head(y)
+    if summary.at_rest:
+        from rodsim.plotting.diagram import plot_diagram
 
-    xs, ys, groups = summary.series(x, y)
-    plot_columns(path, xs, ys, groups, (summary.head(x), summary.head(y)))
+        rows = [row for row in summary.rows.values() if {x, y, "growing_modes"} <= row.keys()]
+        plot_diagram(path, *([row[c] for row in rows] for c in (x, y, "growing_modes")), heads)
+    else:
+        from rodsim.plotting.columns import plot_columns
+
+        xs, ys, groups = summary.series(x, y)
+        plot_columns(path, xs, ys, groups, heads)
     click.echo(f"drew {path}", err=True)

@@ -66,6 +66,33 @@ class Apart:
 
 
 @dataclass(frozen=True)
+class Statics:
+    """What a force tells those who look for states at rest, beside its loads and its energy.
+
+    A force that acts on each node by that node's own position and triad, or on neighbours along a
+    rod, need not say anything: its derivatives are taken by differences.
+
+    exact : the kernel, or where it is, of the exact gradient of its energy, where its own is not.
+    stiffness : of a force that couples other nodes: called with (state, row, scene), returns
+    (i, j, blocks) with -d(load of node i)/d(z of node j) to be added up; i, j (n,), blocks
+    (n, 3, 3) of positions alone, or (n, 6, 6) of positions and rotation vectors.
+    holds : degrees of freedom that it keeps where they are, c N + k for component c (x, y, z, then
+    three of the rotation vector) of node k.
+    move : the farthest that a point may move in one step, length.
+    refused : why states at rest cannot be looked for with it, if they cannot.
+    """
+
+    exact: Kernel | str | None = None
+    stiffness: Callable | None = None
+    holds: tuple[int, ...] = ()
+    move: float = math.inf
+    refused: str = ""
+
+
+LOCAL = Statics()
+
+
+@dataclass(frozen=True)
 class Part:
     """One part of a scene: its kernel and its numbers.
 
@@ -92,6 +119,7 @@ class Part:
     what the force and torque (6,) about the origin are beyond those of that evaluation.
     guard, apart : what it asks of steps, how far it keeps rods apart, if it does.
     warnings : Problems of the case that do not stop a run.
+    statics : what it tells those who look for states at rest.
     """
 
     name: str
@@ -112,6 +140,7 @@ class Part:
     guard: Guard | None = None
     apart: Apart | None = None
     warnings: tuple = ()
+    statics: Statics = LOCAL
 
     @property
     def where(self) -> str:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rodsim.compiled.parts import FORCE, Part
+from rodsim.compiled.parts import FORCE, Part, Statics
 from rodsim.compiled.row import Entry, Row
 from rodsim.registry import Kind
 
@@ -30,8 +30,9 @@ def elastic_part(scene) -> Part:
     along = scene.along
     kernel, fixed = ("elastic", np.zeros(0)) if along is None else ("varying", along.ravel())
     home = f"rodsim.forces.elasticity:{kernel}_loads"
-    row = strain_twist(scene.entries, scene.rods)
-    return Part("elastic", FORCE, home, row, fixed, drive="the strain twist", observe=_observe)
+    exact = Statics(exact=f"rodsim.forces.exact:exact_{kernel}_loads")
+    row, drive = strain_twist(scene.entries, scene.rods), "the strain twist"
+    return Part("elastic", FORCE, home, row, fixed, drive, observe=_observe, statics=exact)
 
 
 def _observe(state, row, scene):

@@ -18,7 +18,7 @@ from pydantic import AfterValidator
 
 from rodsim.case.fields import Name, not_empty
 from rodsim.case.words import did_you_mean
-from rodsim.compiled.parts import FORCE, Part
+from rodsim.compiled.parts import FORCE, Part, Statics
 from rodsim.errors import CaseError
 from rodsim.forces.places import arc_length, check_place, rod_named
 from rodsim.forces.places import shares as shares_at
@@ -94,10 +94,14 @@ def _build(case, scene) -> list[Part]:
     def observe(state, row, scene):
         return {"tether_energy": tether_energies(fixed, state)}
 
+    def stiffness(state, row, scene):
+        return tether_stiffness(fixed, state)
+
     kernel = "rodsim.forces.tether_force:apply_tethers"
     return [
         Part("tethers", FORCE, kernel, fixed=fixed, external=True, potential=True,
-             observe=observe, series=series, labels={"tether_energy": tuple(case.tethers)})
+             observe=observe, series=series, labels={"tether_energy": tuple(case.tethers)},
+             statics=Statics(stiffness=stiffness))
     ]  # fmt: skip
 
 
@@ -112,16 +116,45 @@ def _check_plane(case, scene):
 
 def tether_energies(fixed: np.ndarray, state) -> np.ndarray:
     """Return 1/2 k (|d| - l)^2 of each tether of a state, 0 where it is slack."""
-    table = fixed.reshape(-1, TETHER)
-    places = []
-    for end in (table[:, 3 : 3 + END], table[:, 3 + END :]):
-        nodes, shares = end[:, :2].astype(int), end[:, 2:4]
-        points = end[:, POINT:TURNS].T
-        turned = np.einsum("ick,ik->ck", state.director[:, :, nodes[:, 0]], points)
-        points = np.where(end[:, TURNS] != 0.0, turned, points)
-        places.append((state.position[:, nodes] * shares).sum(axis=2) + points)
-    stretched = np.linalg.norm(places[1] - places[0], axis=0) - table[:, 1]
+    table, _, _, d = _vectors(fixed, state)
+    stretched = np.linalg.norm(d, axis=0) - table[:, 1]
     return np.where(stretched * table[:, 2] < 0.0, 0.0, 0.5 * table[:, 0] * stretched**2)
+
+
+def tether_stiffness(fixed: np.ndarray, state):
+    """Return the second derivatives of the energies as (i, j, blocks), see ``parts.Statics``.
+
+    With shares w of the nodes in d they are w_i w_j k ((1 - l/|d|) 1 + l d d^T/|d|^3). That is by
+    places alone: bodies do not turn.
+    """
+    table, nodes, weights, d = _vectors(fixed, state)
+    distance = np.linalg.norm(d, axis=0)
+    taut = (distance - table[:, 1]) * table[:, 2] >= 0.0
+    share = np.divide(table[:, 1], distance, out=np.zeros_like(distance), where=distance > 0.0)
+    unit = d / np.where(distance > 0.0, distance, 1.0)
+    along = share * unit[:, None] * unit[None] + (1.0 - share) * np.eye(3)[:, :, None]
+    blocks = np.einsum("t,ta,tb,cdt->tabcd", table[:, 0] * taut, weights, weights, along)
+    first = np.repeat(nodes[:, :, None], 4, axis=2)
+    return first.ravel(), first.swapaxes(1, 2).ravel(), blocks.reshape(-1, 3, 3)
+
+
+def _vectors(fixed, state):
+    """Return the table of tethers (t, 19), the nodes and weights (t, 4) of d, and d (3, t)."""
+    table = fixed.reshape(-1, TETHER)
+    ends = table[:, 3 : 3 + END], table[:, 3 + END :]
+    nodes = np.concatenate([end[:, :2] for end in ends], axis=1).astype(int)
+    weights = np.concatenate([-ends[0][:, 2:4], ends[1][:, 2:4]], axis=1)
+    weights, nodes = np.where(nodes < 0, 0.0, weights), np.maximum(nodes, 0)
+    first, second = (_points(end, state.director) for end in ends)
+    d = (state.position[:, nodes] * weights).sum(axis=2) + second - first
+    return table, nodes, weights, d
+
+
+def _points(end, director):
+    """Return the points (3, t) of ends, R p of those that turn with a body."""
+    points = end[:, POINT:TURNS].T
+    turned = np.einsum("ick,ik->ck", director[:, :, end[:, 0].astype(int)], points)
+    return np.where(end[:, TURNS] != 0.0, turned, points)
 
 
 KIND = Kind(

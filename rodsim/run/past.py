@@ -156,6 +156,9 @@ class Past:
 
 
 def _read(path, run, overrides, lock):
+    if "residual" in run.observables:
+        again = f"rodsim run CASE.yaml --from {path}"
+        raise FileError(f"{path}: is no run, but states at rest; a run can start there: {again}")
     whole = whole_frames(run)
     snapshot = run.checkpoint(whole)
     if snapshot is None and whole < run.frames and run.checkpoint() is not None:

@@ -35,6 +35,22 @@ def restore_scene(run) -> Scene:
     return replace(scene, initial=replace(first, work=scene.initial.work))
 
 
+def scene_at(run, case: Case, frame: int) -> Scene:
+    """Return the scene of a case that starts from a frame of a stored run, without tracers.
+
+    ``case`` has the rods of the run; what is natural to them is what it was there. Raises CaseError
+    and FileError.
+    """
+    names = {rod.name for rod in run.rods}
+    if names != case.rods.keys():
+        raise FileError(f"{run.path}: has the rods {', '.join(sorted(names))}: not the case's")
+    if not -run.frames <= frame < run.frames:
+        raise FileError(f"{run.path}: frame {frame} of {run.frames} does not exist")
+    state = stored_state(run, frame)
+    scene = build_scene(case.model_copy(update={"tracers": {}}), _Frame(run, state))
+    return replace(scene, initial=replace(state, time=0.0, work=scene.initial.work))
+
+
 def restore_case(run) -> Case:
     """Return the case of a stored run, which has all its rods; FileError where it has not."""
     try:

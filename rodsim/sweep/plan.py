@@ -29,13 +29,16 @@ OPTION = "--set"
 class Run:
     """One run: ``values`` are what the sweep sets, ``data`` is the whole resolved case.
 
-    ``inputs`` : digests of the files that the case names.
+    ``inputs`` : digests of the files that the case names. ``verb``, ``options`` : the command
+    that does it.
     """
 
     folder: Path
     values: dict[str, Any]
     data: dict[str, Any]
     inputs: dict[str, dict[str, str]]
+    verb: str = "run"
+    options: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -82,9 +85,10 @@ class Plan:
     key_units: dict[str, str]
 
 
-def make_plan(case_path, settings, table, folder) -> Plan:
+def make_plan(case_path, settings, table, folder, numbered=False) -> Plan:
     """Return the runs that ``--set`` options and a table ask for; writes nothing.
 
+    numbered : folders begin with the number of their run, and the same values may come again.
     Every row of the table meets every combination of the lists. Raises CaseError with all problems
     of all runs, UsageError for a sweep without runs, with too many, or with the same one twice.
     """
@@ -104,10 +108,10 @@ def make_plan(case_path, settings, table, folder) -> Plan:
         (where, row | dict(zip(axes, chosen, strict=True)))
         for (where, row), *chosen in itertools.product(rows, *axes.values())
     ]
-    return _load(case_path, fixed, axes, choices, Path(folder).absolute())
+    return _load(case_path, fixed, axes, choices, Path(folder).absolute(), numbered)
 
 
-def _load(case_path, fixed, axes, choices, folder):
+def _load(case_path, fixed, axes, choices, folder, numbered):
     """Load the case of every choice, all problems at once."""
     runs, units, problems, known = {}, {}, [], {}
     for where, values in choices:
@@ -121,6 +125,7 @@ def _load(case_path, fixed, axes, choices, folder):
         units |= {key: case.source.unit(tuple(key.split("."))) for key in values}
         values = {key: case.source.number(key, value) for key, value in values.items()}
         name, data = folder_name(values), _self_contained(case)
+        name = f"{len(runs):03d}_{name}" if numbered else name
         if name in runs:
             raise UsageError(f"the sweep has the run {name} twice")
         runs[name] = Run(folder / name, values, data, digests(data, folder, known))

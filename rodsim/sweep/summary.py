@@ -18,6 +18,7 @@ from rodsim.analysis.swimming import mean_rate, swimming_velocity
 from rodsim.errors import FileError, SweepError, UsageError
 from rodsim.files import replacing
 from rodsim.output import open_trajectory
+from rodsim.sweep.at_rest import RESTS, SHOWN_AT_REST, total_energy
 from rodsim.sweep.measured import Measured
 from rodsim.sweep.plan import Plan, Run
 from rodsim.sweep.standing import standing
@@ -60,6 +61,8 @@ class Summary:
     def __post_init__(self):
         self._next = 0.0
         self._measured = Measured(self.measures, self.plan)
+        self.at_rest = all(run.verb == "rest" for run in self.plan.runs)
+        self.results = RESTS if self.at_rest else RESULTS
         self._reference = _last_frame(self.reference) if self.reference else None
         for run in self.plan.runs:
             _period(self.period, run)  # a wrong expression shows before the runs, not after
@@ -68,16 +71,16 @@ class Summary:
     @property
     def columns(self) -> list[str]:
         """Names of the columns."""
-        results = list(RESULTS)
-        place = results.index("error")
+        results = list(self.results)
+        place = results.index("error") if "error" in results else len(results)
         results[place:place] = self._measured.columns
         return ["run", *self.plan.key_units, *results]
 
     def head(self, column: str) -> str:
         """Return the head of a column, with its unit."""
         unit = self.plan.key_units.get(column, self._measured.columns.get(column, ""))
-        if column in RESULTS:
-            unit = unit_text(RESULTS[column], self.plan.runs[0].data["units"])
+        if column in self.results:
+            unit = unit_text(self.results[column], self.plan.runs[0].data["units"])
         return f"{column} ({unit})" if unit not in ("", "1") else column
 
     def column(self, name: str) -> str:
@@ -101,7 +104,8 @@ class Summary:
         except UsageError as error:  # of a quantity of the user's own: the runs go on
             row["message"] = str(error)
         if failure or status == "diverged":
-            row["message"] = failure or last_line(run.log, "diverged in step")
+            begins = "" if self.at_rest else "diverged in step"
+            row["message"] = failure or last_line(run.log, begins)
         self.rows[run.name] = row
         return row
 
@@ -112,16 +116,19 @@ class Summary:
             energies = {
                 name: float(output.observable(name, -1).sum())
                 for name in output.observables
-                if name in RESULTS
+                if name in self.results
             }
             energies["elastic_energy"] = sum(energies[f"{part}_energy"] for part in PARTS)
+            if self.at_rest:
+                energies["total_energy"] = total_energy(output)
             period = _period(self.period, run)
             velocity = _velocity(output, period)
             measured = self._measured.of(output, period)
-            cost = {k: v for k, v in output.runtime.items() if k in RESULTS}
+            cost = {k: v for k, v in output.runtime.items() if k in self.results}
             error = self._error(output)
             time = float(output.time[-1])
-        return {"time": time, **velocity, **energies, **measured, **error, **cost}
+        found = {"time": time, **velocity, **energies, **error, **cost}
+        return {name: value for name, value in found.items() if name in self.results} | measured
 
     def _error(self, output):
         if self._reference is None:
@@ -180,7 +187,8 @@ class Summary:
     def text(self) -> str:
         """Return the most important columns as aligned text."""
         present = set().union(*self.rows.values())
-        shown = [c for c in SHOWN if c not in self._measured.columns]
+        shown = SHOWN_AT_REST if self.at_rest else SHOWN
+        shown = [c for c in shown if c not in self._measured.columns]
         columns = [*self.plan.key_units, *shown[:-1], *self._measured.columns, shown[-1]]
         columns = [c for c in columns if c in present]
         cells = [[self.head(c) for c in columns]]

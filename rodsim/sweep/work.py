@@ -26,6 +26,8 @@ _begun: set[tuple[str, str]] = set()  # (sweep, name of a run) that this process
 
 def command(run: Run, stands: str) -> list[str]:
     """Return the command that does what is left of a run."""
+    if run.verb != "run":  # nothing that could be resumed
+        return [*this_rodsim(), run.verb, str(run.case), "-o", str(run.output), *run.options]
     if stands in ("stopped", "running"):
         return [*this_rodsim(), "resume", str(run.output)]
     return [*this_rodsim(), "run", str(run.case), "-o", str(run.output)]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from acting import of_part
 from click.testing import CliRunner
-from scenes import CONFIGS
+from scenes import CONFIGS, load
 
 from rodsim import open_trajectory
 from rodsim.analysis.helix import fit_helix
@@ -302,6 +302,15 @@ def test_the_cilium_pushes_as_its_header_says(tmp_path):
         assert not trajectory.position[..., 0].any()  # planar
 
 
+@pytest.mark.parametrize(("twist", "growing"), [(1.7, 0), (1.76, 2)])
+def test_michells_ring_is_stable_up_to_the_twist_of_its_header(twist, growing):
+    from rodsim.rest.solve import find_rest
+    from rodsim.scene.build import build_scene
+
+    scene = build_scene(load("michell_ring", f"parameters.twist={twist}"))
+    assert find_rest(scene, saddle=True).growing == growing
+
+
 def test_every_config_is_tested_here():
     assert {path.stem for path in CONFIGS.glob("*.yaml")} == {
         "open_rod", "open_rod_half_twist", "closed_ring", "closed_ring_low_twist", "flagellum",
@@ -311,4 +320,5 @@ def test_every_config_is_tested_here():
         "plectoneme", "two_rods_crossing",
         "swimmer_at_wall", "fibre_settling_on_wall",
         "bacterium", "two_swimmers", "rotating_helix", "cilium",
+        "michell_ring",
     }  # fmt: skip

@@ -56,6 +56,20 @@ def test_the_list_of_contributing_is_the_tree():
     assert listed == rooms | loose
 
 
+def test_scipy_is_for_states_at_rest_and_imported_where_it_is_used():
+    """So whoever runs a scene does not wait for it, nor needs it."""
+    for path in files():
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        found = [n for n in ast.walk(tree) if isinstance(n, ast.ImportFrom | ast.Import)]
+        names = [
+            n.module or "" if isinstance(n, ast.ImportFrom) else n.names[0].name for n in found
+        ]
+        if any(name.startswith("scipy") for name in names):
+            assert path.relative_to(HOUSE).parts[0] == "rest", path
+        top = [n for n in tree.body if n in found]
+        assert not [n for n in top if (getattr(n, "module", "") or "").startswith("scipy")], path
+
+
 def test_nobody_asks_for_a_method_by_name():
     """What is known of a method stands in case/methods.py; others read it there."""
     for path in files():
