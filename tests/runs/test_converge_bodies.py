@@ -60,7 +60,16 @@ def test_what_has_no_such_points_is_refused(tmp_path, bodies):
         (tmp_path / "x.csv").write_text("x,y,z\n" + rows)
     (tmp_path / "case.yaml").write_text(text)
     done = CliRunner().invoke(
-        main, ["converge", str(tmp_path / "case.yaml"), "--in", "body_points", "-q"]
+        main,
+        [
+            "converge",
+            str(tmp_path / "case.yaml"),
+            "--in",
+            "body_points",
+            "-q",
+            "-o",
+            str(tmp_path / "report"),
+        ],
     )
     assert done.exit_code == 2
     assert words in done.stderr
