@@ -37,6 +37,7 @@ SECTIONS = {
     "Spacings": "fluid.epsilon with spacings",
     "Radius": "fluid.epsilon with radius",
     "Wall": "fluid.wall",
+    "Sums": "fluid.sums",
     "Rod": "rods.NAME",
     "Perturb": "rods.NAME.perturb",
     "Moduli": "rods.NAME.moduli",

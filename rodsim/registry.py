@@ -23,6 +23,7 @@ KINDS = (
     "rodsim.blocks.build:START",
     "rodsim.blocks.build:END",
     "rodsim.flows.fluid",
+    "rodsim.flows.fast.kind",
     "rodsim.flows.background",
 )
 
@@ -37,7 +38,7 @@ class Kind:
     of what stands there. dimension, about : of the schema.
     check : called with a case, sections of which may be None, and the names of all rods of the
     file, also of those that did not validate; yields (path, reason) of what is wrong across
-    sections.
+    sections. doubt : called with the same case, yields the same of what does not stop a run.
     """
 
     build: Callable
@@ -47,6 +48,7 @@ class Kind:
     dimension: str = ""
     about: str = ""
     check: Callable | None = None
+    doubt: Callable | None = None
 
 
 @lru_cache(maxsize=1)

@@ -39,6 +39,8 @@ def check(case: Case, rod_names: Iterable[str]) -> tuple[list[Finding], list[Fin
     for kind in kinds():
         errors += kind.check(case, rod_names) if kind.check else ()
     warnings: list[Finding] = [*_thin(case)]
+    for kind in kinds():
+        warnings += kind.doubt(case) if kind.doubt else ()
     if case.time is not None:
         errors += _step_missing(case.time)
         warnings += _ignored(case.time)

@@ -58,9 +58,9 @@ def converge(case_path, axes, report, overrides, threads, quiet):
     """Measure error against run time of this very scene.
 
     Runs the case again and again: at other tolerances (rkc) and steps (euler, rk4), with other
-    numbers of points (length and epsilon fixed), with other epsilons (a sensitivity), and, where
-    --in names body_points, with other numbers of points of bodies, each held against a reference
-    that it computes itself. Ctrl-C keeps what has been measured.
+    numbers of points (length and epsilon fixed), with other epsilons (a sensitivity) and, where it
+    is asked for, with fast sums of other accuracies and with other numbers of points of bodies,
+    each held against a reference that it computes itself. Ctrl-C keeps what has been measured.
     """
     case = load(case_path, overrides)
     say_warnings(case)

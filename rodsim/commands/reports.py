@@ -13,9 +13,10 @@ from rodsim.commands.groups import (
 )
 from rodsim.commands.held import describe_held
 from rodsim.commands.stored_case import describe_stored
+from rodsim.commands.sums import describe_sums
 from rodsim.commands.touching import describe_contact, describe_links
 from rodsim.errors import FileError
-from rodsim.run.ending import Motion, gap_sentence
+from rodsim.run.ending import Motion, SumErrors, gap_sentence
 from rodsim.run.recorder import frame_times
 from rodsim.scene.at_wall import mirror_gap
 from rodsim.scene.build import build_scene
@@ -59,6 +60,7 @@ def describe_case(case, refuse=False, threads=None) -> str:
     for name, count in scene.tracer_groups.items():
         lines.append(f"tracers {name}: {count} markers")
     lines += describe_groups(case, scene)
+    lines += describe_sums(case, scene)
     time = case.time
     option = METHODS[time.integrator].option
     how = f"{option} {getattr(time, option):g}"
@@ -152,8 +154,10 @@ def _endings(run):
         return []
     motion = Motion(is_driven(case))
     motion.read(run, run.frames)
+    errors = SumErrors(case)
+    errors.read(run, run.frames)
     at_rest = run.status == "finished" and run.frames < len(run.planned)
-    sentences = [motion.sentence(run.units, at_rest)]
+    sentences = [motion.sentence(run.units, at_rest), errors.sentence()]
     if "gap" in run.observables:
         gaps = run.observable("gap")
         k, diameter = int(gaps.argmin()), stored_diameter(run, case)

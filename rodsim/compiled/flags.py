@@ -29,6 +29,8 @@ MAT = "float64[:, ::1]"
 TRIADS = "float64[:, :, ::1]"
 INTS = "int64[::1]"
 INT_MAT = "int64[:, ::1]"
+INTS32 = "int32[::1]"
+INT_MAT32 = "int32[:, ::1]"
 BOOLS = "boolean[::1]"
 RODS = f"Tuple(({INTS}, {INTS}, {BOOLS}, {VEC}, {MAT}))"  # nodes.Rods.tables
 STATE = f"Tuple(({MAT}, {TRIADS}, {MAT}))"  # position, director, tracer
@@ -36,11 +38,21 @@ PART = f"void({VEC}, {VEC}, {RODS}, {STATE}, {MAT}, UniTuple({MAT}, 2))"  # comp
 SUM = f"void({MAT}, {MAT}, {MAT}, float64, float64, float64, {MAT})"  # compiled.kernels
 ONE = np.uint64(1)
 
+# What Numba may run in parallel; all but prange costs seconds of compiling and saves nothing.
+PARALLEL = (
+    "prange", "numpy", "setitem", "inplace_binop", "comprehension", "reduction", "stencil", "fusion"
+)  # fmt: skip
 SUM_FLAGS = {"reassoc", "contract", "arcp", "nsz"}
 
 kernel = partial(cached_njit, error_model="numpy")
 parallel_kernel = partial(cached_njit, error_model="numpy", parallel=True, fastmath=SUM_FLAGS)
 summed = partial(cached_njit, error_model="numpy", fastmath=SUM_FLAGS)  # the same, reordered
+threaded_kernel = partial(
+    cached_njit,
+    error_model="numpy",
+    fastmath=SUM_FLAGS,
+    parallel={name: name == "prange" for name in PARALLEL},
+)
 unsigned = kernel  # without a signature: compiled with whatever calls it
 inline = partial(cached_njit, error_model="numpy", inline="always")
 

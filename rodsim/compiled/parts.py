@@ -120,6 +120,9 @@ class Part:
     guard, apart : what it asks of steps, how far it keeps rods apart, if it does.
     warnings : Problems of the case that do not stop a run.
     statics : what it tells those who look for states at rest.
+    prepare : called with (state, loads (6, N)) where a step begins, returns ``fixed`` for that
+    step: what depends on the state alone and is to be frozen over a step.
+    needs : where the kernels are that ``prepare`` calls beside the part's own, if any.
     """
 
     name: str
@@ -141,6 +144,8 @@ class Part:
     apart: Apart | None = None
     warnings: tuple = ()
     statics: Statics = LOCAL
+    prepare: Callable | None = None
+    needs: tuple[str, ...] = ()
 
     @property
     def where(self) -> str:

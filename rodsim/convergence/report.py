@@ -17,6 +17,7 @@ HEADS = {
     "time": "error against run time: tolerance of rkc, step of euler and rk4",
     "points": "error of the discretisation: points at fixed length and epsilon",
     "body_points": "error of the surfaces: points of bodies, all else fixed",
+    "accuracy": "error of fast sums: their accuracy",
     "epsilon": "sensitivity to epsilon: another blob is another model, this is no error",
 }
 
@@ -33,7 +34,7 @@ def fitted_order(section: Section, method: str) -> float | None:
         for result in section.results
         if result.row.method == method and result.errors and result.errors.position > floor
     ]
-    if section.axis == "epsilon" or len(pairs) < 2:
+    if section.axis in ("epsilon", "accuracy") or len(pairs) < 2:
         return None
     size, error = np.log(pairs).T
     return float(np.polyfit(size, error, 1)[0])

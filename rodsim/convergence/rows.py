@@ -8,7 +8,9 @@ from dataclasses import dataclass
 from rodsim.blocks.surface import FEWEST, MOST
 from rodsim.case.methods import FIXED_STEP
 
-AXES = ("tolerance", "step", "points", "body_points", "epsilon")
+AXES = ("tolerance", "step", "points", "body_points", "epsilon", "accuracy")
+ACCURACIES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)  # of fast sums
+EXACT = 0.0
 TOLERANCES = tuple(10.0 ** (k / 2) for k in range(4, -5, -1))  # times the case's own
 REFERENCE, CHECK = 1e-4, 1e-3  # of the case's tolerance
 TIGHTEST = 1e-12
@@ -161,3 +163,11 @@ def epsilon_rows(case, rate, epsilon) -> list[Row]:
         )
         for factor in SENSITIVITY
     ]
+
+
+def accuracy_rows(case, rate) -> list[Row]:
+    """Exact sums, and fast ones of several accuracies, at the case's own tolerance."""
+    method, cost = case.time.integrator, guess(case, rate, case.time.tolerance)
+    exact = Row("accuracy", method, EXACT, ("fluid.sums=null",), cost)
+    fast = [Row("accuracy", method, a, (f"fluid.sums.accuracy={a!r}",), cost) for a in ACCURACIES]
+    return [exact, *fast]

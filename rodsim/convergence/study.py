@@ -126,6 +126,9 @@ class Study:
             words = f"the case's own epsilon, {self.scene.epsilon:.6g}"
             found = rows.epsilon_rows(case, rate, self.scene.epsilon)
             plan.append((Section("epsilon", words), [own, *found]))
+        if "accuracy" in self.axes:
+            words = "exact sums, with the same steps"
+            plan.append((Section("accuracy", words), rows.accuracy_rows(case, rate)))
         return plan
 
     def _need_formulas(self):
@@ -152,11 +155,15 @@ class Study:
         if not isinstance(reference, Outcome):
             raise UsageError(f"{section.axis}: the reference ({section.reference}) is {reference}")
         self.sections.append(section)
-        if section.axis in ("points", "body_points"):
+        if section.axis in ("points", "body_points", "accuracy"):
             others = [*others, first]
         for row in others:
             result = self._result(row, first, reference)
-            if section.own is None and section.axis != "epsilon" and result.errors:
+            if (
+                section.own is None
+                and section.axis in ("time", "points", "body_points")
+                and result.errors
+            ):
                 section.own = _own(section, result.errors)
             if result.outcome and row is not first and self._is_twin(row):
                 section.rounding = self._rounding(row, result.outcome)

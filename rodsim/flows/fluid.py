@@ -31,12 +31,15 @@ def fluid_parts(scene) -> list[Part]:
     return [
         Part("fluid", FLOW, f"{home}:{kind}_{blob}", fixed=fixed),
         Part(
-            "fluid", TRACERS, f"{home}:tracers_{blob}", fixed=fixed, pressure=_pressure(scene, home)
+            "fluid", TRACERS, f"{home}:tracers_{blob}", fixed=fixed,
+            pressure=pressure_of(scene, home),
         ),
-    ]
+    ]  # fmt: skip
 
 
-def _pressure(scene, home):
+def pressure_of(scene, home):
+    """Return what a part of the fluid has as its ``pressure``."""
+
     def pressure(points, sources, loads, t, left):
         """Return the pressure (T,) at points (3, T), eq. (62); NaN below a wall."""
         from rodsim.flows.blobs import BLOBS
@@ -52,7 +55,7 @@ def _pressure(scene, home):
 
 
 KIND = Kind(
-    build=lambda case, scene: fluid_parts(scene),
+    build=lambda case, scene: fluid_parts(scene) if case.fluid.sums is None else [],
     word="wall",
     where="Fluid",
     words=Wall,

@@ -22,7 +22,7 @@ from functools import lru_cache
 
 from numba import prange
 
-from rodsim.compiled.flags import parallel_kernel
+from rodsim.compiled.flags import inline, parallel_kernel
 from rodsim.compiled.kernels import pair_sum, part
 from rodsim.flows.blobs import (
     ALGEBRAIC7,
@@ -36,6 +36,42 @@ from rodsim.flows.sources import points_of_rods
 EIGHT_PI = 8.0 * math.pi
 
 
+@inline
+def add_up(blob, planar, angular, x, y, z, sources, loads, e2):
+    """Return 8 pi mu (u, w) at one target, from all sources; constants choose the sum."""
+    ux, uy, uz, wx, wy, wz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(sources.shape[1]):
+        ry, rz = y - sources[1, k], z - sources[2, k]
+        gy, gz, mx = loads[1, k], loads[2, k], loads[3, k]
+        r2 = ry * ry + rz * rz
+        gr = gy * ry + gz * rz
+        if not planar:
+            rx = x - sources[0, k]
+            gx, my, mz = loads[0, k], loads[4, k], loads[5, k]
+            r2 += rx * rx
+            gr += gx * rx
+        inverse = inverse_distance(r2, e2)
+        h1, h2, q = stokeslet_scalars(blob, inverse, e2)
+        along = h2 * gr
+        q *= 0.5
+        uy += gy * h1 + along * ry - q * (mx * rz)
+        uz += gz * h1 + along * rz + q * (mx * ry)
+        if not planar:
+            ux += gx * h1 + along * rx + q * (my * rz - mz * ry)
+            uy += q * (mz * rx)
+            uz -= q * (my * rx)
+        if angular:
+            d1, d2 = dipole_scalars(blob, inverse, e2)
+            d1 *= 0.25
+            wx += q * (gy * rz - gz * ry) + d1 * mx
+            if not planar:
+                axial = 0.25 * d2 * (mx * rx + my * ry + mz * rz)
+                wx += axial * rx
+                wy += q * (gz * rx - gx * rz) + d1 * my + axial * ry
+                wz += q * (gx * ry - gy * rx) + d1 * mz + axial * rz
+    return ux, uy, uz, wx, wy, wz
+
+
 def _sum(blob, planar, angular):
     """Make the sum of a blob: for any scene or a planar one, with or without w."""
 
@@ -45,36 +81,7 @@ def _sum(blob, planar, angular):
         scale = 1.0 / (EIGHT_PI * viscosity)
         for i in prange(targets.shape[1]):
             x, y, z = targets[0, i], targets[1, i], targets[2, i]
-            ux, uy, uz, wx, wy, wz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-            for k in range(sources.shape[1]):
-                ry, rz = y - sources[1, k], z - sources[2, k]
-                gy, gz, mx = loads[1, k], loads[2, k], loads[3, k]
-                r2 = ry * ry + rz * rz
-                gr = gy * ry + gz * rz
-                if not planar:
-                    rx = x - sources[0, k]
-                    gx, my, mz = loads[0, k], loads[4, k], loads[5, k]
-                    r2 += rx * rx
-                    gr += gx * rx
-                inverse = inverse_distance(r2, e2)
-                h1, h2, q = stokeslet_scalars(blob, inverse, e2)
-                along = h2 * gr
-                q *= 0.5
-                uy += gy * h1 + along * ry - q * (mx * rz)
-                uz += gz * h1 + along * rz + q * (mx * ry)
-                if not planar:
-                    ux += gx * h1 + along * rx + q * (my * rz - mz * ry)
-                    uy += q * (mz * rx)
-                    uz -= q * (my * rx)
-                if angular:
-                    d1, d2 = dipole_scalars(blob, inverse, e2)
-                    d1 *= 0.25
-                    wx += q * (gy * rz - gz * ry) + d1 * mx
-                    if not planar:
-                        axial = 0.25 * d2 * (mx * rx + my * ry + mz * rz)
-                        wx += axial * rx
-                        wy += q * (gz * rx - gx * rz) + d1 * my + axial * ry
-                        wz += q * (gx * ry - gy * rx) + d1 * mz + axial * rz
+            ux, uy, uz, wx, wy, wz = add_up(blob, planar, angular, x, y, z, sources, loads, e2)
             out[0, i] += scale * ux
             out[1, i] += scale * uy
             out[2, i] += scale * uz

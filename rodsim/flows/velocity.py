@@ -26,6 +26,8 @@ def velocity(
     blob="algebraic7",
     angular=True,
     wall=None,
+    accuracy=None,
+    rods=None,
 ):
     """Return linear and angular velocity at ``targets``, eqs. (32), (33), (61), (66).
 
@@ -41,6 +43,10 @@ def velocity(
     angular : with False the second sum is not computed and None returned for it.
     wall : float, length, or None. Height z of a plane wall without slip; the fluid is above it,
         where all sources must be. Formulas: ``flows/wall.py``.
+    accuracy : float, 1e-12 to 0.1, or None. With it the sums are fast instead of exact, to this
+        relative error, root mean square over the targets: for sources along curves, one after
+        another, thousands of them (docs/large.md). Not at a wall.
+    rods : how many of the sources each curve has, in order; by default all are one curve.
 
     Returns
     -------
@@ -49,14 +55,21 @@ def velocity(
 
     Raises
     ------
-    UsageError : a shape, the blob's name, epsilon, viscosity or the wall's height cannot be used;
-        a source is at the wall or below it.
+    UsageError : a shape, the blob's name, epsilon, viscosity, the wall's height, the accuracy or
+        the numbers of sources cannot be used; a source is at the wall or below it; the accuracy
+        cannot be reached.
     """
     targets, sources, loads = _arrays(targets, sources, forces, torques)
+    fluid = _positive(epsilon, "epsilon"), _positive(viscosity, "viscosity")
+    _blob(blob)
+    if accuracy is not None:
+        out = _fast(targets, sources, loads, fluid, blob, bool(angular), wall, accuracy, rods)
+        return out[:3].T.copy(), (out[3:].T.copy() if angular else None)
+    if rods is not None:
+        raise UsageError("rods is for the fast sums: give accuracy too")
     sums, height = _sums(wall, sources)
     kernel = sums.velocity_kernel(_blob(blob), False, bool(angular))
     out = np.zeros((6 if angular else 3, targets.shape[1]))
-    fluid = _positive(epsilon, "epsilon"), _positive(viscosity, "viscosity")
     with computing():
         kernel(targets, sources, loads, *fluid, *height, out)
     out[:, _below(targets, wall)] = np.nan
@@ -81,6 +94,37 @@ def pressure(targets, sources, forces, epsilon, *, blob="algebraic7", wall=None,
     with computing():
         kernel(targets, sources, loads, epsilon, *height, out)
     out[_below(targets, wall)] = np.nan
+    return out
+
+
+def _fast(targets, sources, loads, fluid, blob, angular, wall, accuracy, rods):
+    """Return the fast sums (6, T), or (3, T) without w."""
+    if wall is not None:
+        raise UsageError("there is no fast sum beside a wall: leave out accuracy, or wall")
+    if not 1e-12 <= accuracy <= 0.1:
+        raise UsageError(f"accuracy must be between 1e-12 and 0.1, not {accuracy}")
+    counts = np.atleast_1d(sources.shape[1] if rods is None else rods).astype(int)
+    if counts.min() < 1 or counts.sum() != sources.shape[1]:
+        raise UsageError(f"rods must be numbers of sources that add up to {sources.shape[1]}")
+    if not np.isfinite(sources).all():
+        raise UsageError("sources must be finite for a fast sum")
+    from rodsim.flows.fast.plan import GroupSum, RodSum
+
+    own = angular and np.array_equal(targets, sources)
+    out = np.zeros((6 if angular else 3, targets.shape[1]))
+    with computing():
+        if own:
+            fast = RodSum(counts, accuracy, *fluid, blob)
+            fast.kernel(fast.prepare(sources, loads), sources, loads, False, out)
+        else:
+            fast = GroupSum(counts, accuracy, *fluid, blob, angular)
+            tables = fast.prepare(targets, sources, loads)
+            fast.kernel(tables, targets, sources, loads, False, out)
+    if fast.error.max() > accuracy:
+        raise UsageError(
+            f"accuracy {accuracy:g} cannot be reached here, only {fast.error.max():.2g}: leave it "
+            "out, for exact sums"
+        )
     return out
 
 

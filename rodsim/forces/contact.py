@@ -16,15 +16,16 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag
 
 from rodsim.case.fields import Model, Positive, number_tag, quantity
-from rodsim.compiled.parts import FORCE, Apart, Part
+from rodsim.compiled.parts import FORCE, Apart, Part, Statics
 from rodsim.errors import CaseError
-from rodsim.forces.near import segments_within
+from rodsim.forces.near import repulsion_stiffness, segments_within
 from rodsim.forces.overlap import at_start, guard
 from rodsim.forces.places import end_weights
 from rodsim.registry import Kind
 
 DIAMETERS = {"algebraic7": 1.213, "algebraic9": 0.7358}  # hydrodynamic, of the blobs, in epsilons
 FEWEST, FEW = 2.0, 2.5  # spacings in a diameter: refused below, warned of below
+SHARE_AT_REST = 0.1  # of a diameter: how far a point may move in a step towards rest
 EXCLUSION = "contact", "exclusion"
 PAIRS, WALL = "rodsim.forces.repulsion:push_apart", "rodsim.forces.repulsion:push_off_wall"
 
@@ -113,10 +114,19 @@ def _build(case, scene) -> list[Part]:
         "contact", FORCE, PAIRS, fixed=fixed, observe=_observer(fixed, on_wall), apart=apart,
         series=(("contact_energy", (len(rods),), (1, 2, -2)),), guard=guard(case, scene, fixed),
         warnings=(*coarse, *_too_short(case, rods, apart), *close),
+        statics=Statics(stiffness=_stiffness(fixed), move=SHARE_AT_REST * diameter),
     )  # fmt: skip
     if on_wall is None:
         return [pairs]
     return [pairs, Part("contact_wall", FORCE, WALL, fixed=on_wall, external=True, potential=True)]
+
+
+def _stiffness(fixed):
+    def stiffness(state, row, scene):
+        """Return the second derivatives of the energy of all pairs."""
+        return repulsion_stiffness(state.position, scene.rods, fixed)
+
+    return stiffness
 
 
 def _spacings(case, rods, diameter):

@@ -72,8 +72,7 @@ def _correct(X, D, omega, rods, along, loads):
 @part
 def exact_elastic_loads(row, fixed, rods, state, loads, velocities):
     """The exact gradient of what :func:`rodsim.forces.elasticity.elastic_loads` is the load of."""
-    n = state[0].shape[1]
-    omega, none = row.reshape(3, n), fixed.reshape(0, 0)
+    omega, none = row.reshape(3, row.size // 3), fixed.reshape(0, 0)
     _uniform_loads(state[0], state[1], omega, rods, none, loads)
     _correct(state[0], state[1], omega, rods, none, loads)
 
@@ -81,7 +80,7 @@ def exact_elastic_loads(row, fixed, rods, state, loads, velocities):
 @part
 def exact_varying_loads(row, fixed, rods, state, loads, velocities):
     """The exact gradient of what :func:`rodsim.forces.elasticity.varying_loads` is the load of."""
-    n = state[0].shape[1]
+    n = row.size // 3
     omega, along = row.reshape(3, n), fixed.reshape(9, n)
     _varying_loads(state[0], state[1], omega, rods, along, loads)
     _correct(state[0], state[1], omega, rods, along, loads)

@@ -42,6 +42,27 @@ def pairs_within(position: np.ndarray, rods: Rods, excluded: np.ndarray, limit: 
     return first, second, distance
 
 
+def repulsion_stiffness(position, rods: Rods, fixed: np.ndarray):
+    """Return (i, j, blocks (n, 3, 3)) of -dg_i/dX_j of contact, see ``compiled.parts.Statics``.
+
+    fixed : that of :mod:`rodsim.forces.repulsion`. Of a pair, with q = 1 - r^2/d^2 and
+    k = 6 A ds_i ds_j/d^2, B = 4 k q/d^2 r r^T - k q^2 on (i, i) and (j, j), -B on (i, j), (j, i).
+    """
+    n, d = len(rods), fixed[0]
+    strength, excluded, ds = fixed[1 : 1 + n], fixed[1 + n : 1 + 2 * n], fixed[1 + 2 * n :]
+    i, j, distance = pairs_within(position, rods, excluded.astype(np.int64), d)
+    r, s = (np.searchsorted(rods.first, points, "right") - 1 for points in (i, j))
+    k = 6.0 * np.minimum(strength[r], strength[s]) * ds[i] * ds[j] / d**2
+    q, apart = 1.0 - (distance / d) ** 2, (position[:, i] - position[:, j]).T
+    B = (4.0 * k * q / d**2)[:, None, None] * apart[:, :, None] * apart[:, None, :]
+    B -= (k * q * q)[:, None, None] * np.eye(3)
+    return (
+        np.concatenate([i, j, i, j]),
+        np.concatenate([i, j, j, i]),
+        np.concatenate([B, B, -B, -B]),
+    )
+
+
 def _count(rods, excluded, first, second):
     """Tell which pairs count; ``first`` < ``second``."""
     r, other = (np.searchsorted(rods.first, points, "right") - 1 for points in (first, second))

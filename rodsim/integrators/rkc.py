@@ -117,9 +117,8 @@ class RKC:
     def steps(self, state: State, end: float):
         """Yield accepted steps of adapted size until ``end`` is reached exactly."""
         system, f0 = self.system, self._rate
-        if f0 is None:
-            f0 = system.velocities(state.time, state, system.zeros(), system.zeros())
         while state.time < end:
+            f0 = system.at_start(state, f0)
             if self.accepted % REFRESH == 0:
                 self._estimate_rate(state, f0)
             if self._size is None:

@@ -41,7 +41,7 @@ class Forces:
         self._coupling = [part for part in parts if part.statics.stiffness is not None]
         kept = {id(part) for part in parts if _energies(part, scene.initial, scene)}
         self._storing = [part for part in parts if id(part) in kept]
-        others = PartList(part for part in parts if id(part) not in kept)
+        others = PartList(p for p in parts if id(p) not in kept and not p.potential)
         self._working = Evaluation(scene, others) if others else None
 
     def conservative_at(self, state: State) -> bool:

@@ -23,6 +23,39 @@ def gap_sentence(smallest: float, time: float, diameter: float, units: dict) -> 
     )
 
 
+def sums_sentence(largest, accuracy: float) -> str:
+    """Return how far the fast sums were from the exact ones, of what was asked.
+
+    ``largest`` : the largest of the errors of u and of w that were measured at the frames.
+    """
+    u, w = largest
+    far = ": not reached" if max(u, w) > accuracy else ""
+    return f"fast sums: error of u up to {u:.2g}, of w {w:.2g}; {accuracy:g} asked{far}"
+
+
+class SumErrors:
+    """The largest errors of the fast sums that frames have; nothing where the sums are exact."""
+
+    def __init__(self, case):
+        sums = case.fluid.sums
+        self._accuracy, self._largest = sums and sums.accuracy, np.zeros(2)
+
+    def add(self, observables: dict) -> None:
+        """Take in the observables of a frame."""
+        if self._accuracy:
+            self._largest = np.maximum(self._largest, observables["sum_error"])
+
+    def read(self, run, frames: int) -> None:
+        """Take in the first ``frames`` frames of a stored run."""
+        if self._accuracy and frames:
+            errors = run.observable("sum_error", slice(0, frames))
+            self._largest = np.maximum(self._largest, errors.max(axis=0))
+
+    def sentence(self) -> str:
+        """Return what is to be said of them."""
+        return sums_sentence(self._largest, self._accuracy) if self._accuracy else ""
+
+
 class Motion:
     """How far points moved between the last steps of a run, seen at frames.
 

@@ -8,7 +8,7 @@ import numpy as np
 from rodsim.errors import StepFailure
 from rodsim.output import CaseText, Plan
 from rodsim.output.writer import NotFinite
-from rodsim.run.ending import Motion
+from rodsim.run.ending import Motion, SumErrors
 from rodsim.scene.inputs import case_digests
 from rodsim.scene.series import extra_series, row_labels
 
@@ -61,6 +61,7 @@ class Recorder:
         self.system, self.integrator = machine.system, machine.integrator
         self.until_still, self.at_rest, self.end = False, False, machine.case.time.end
         self.gap, self.motion = machine.gap, Motion(machine.system.scene.parts.driven)
+        self.sum_errors = SumErrors(machine.case)
         self.started, self.compile_seconds = started, compile_seconds
         self.writer, self.next_frame, self.output_seconds = None, 0, 0.0
         self.marched = self._checkpointed = self._synced = perf_counter()
@@ -94,6 +95,7 @@ class Recorder:
             what = self.system.scene.parts.not_finite(state.time) or error.name
             raise StepFailure(f"{what} is not finite at t = {state.time:.6g}", state) from None
         self.motion.add(number, state.time, fields["position"])
+        self.sum_errors.add(observables)
         self.next_frame += 1
         self.output_seconds += perf_counter() - begin
 
@@ -136,10 +138,12 @@ class Recorder:
         """Go on after the frames of a stored run: what they say of gap and motion is known."""
         self.gap.resume(run, self.next_frame)
         self.motion.read(run, self.next_frame)
+        self.sum_errors.read(run, self.next_frame)
 
     def endings(self) -> list[str]:
         """Return what is to be said of the motion when the run ends."""
-        sentences = self.gap.sentence(), self.motion.sentence(self.gap.units, self.at_rest)
+        moved = self.motion.sentence(self.gap.units, self.at_rest)
+        sentences = self.gap.sentence(), moved, self.sum_errors.sentence()
         return [text for text in sentences if text]
 
     def runtime(self) -> dict:

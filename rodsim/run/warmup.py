@@ -39,7 +39,8 @@ def ensure_compiled(scene, say) -> float:
         say(compiling)
         return 0.0
     folder = Path(os.environ["NUMBA_CACHE_DIR"])
-    kernels = sorted({name for part in scene.parts for name in (part.where, *part.sums)})
+    needed = ((part.where, *part.sums, *part.needs) for part in scene.parts)
+    kernels = sorted({where for found in needed for where in found})
     # A folder that the user has set can be shared by several versions and installations.
     kind = "-".join((fingerprint(), *kernels))
     if is_compiled(folder, kind):

@@ -43,6 +43,9 @@ class Calls:
         self.numbers = np.concatenate(blocks)
         for part in parts:
             self.fixed(part)[: len(part.sums)] = [address_of(name) for name in part.sums]
+        self._lasting = self.numbers
+        self._prepared = [k for k, part in enumerate(parts) if part.prepare]
+        self._parts = parts
         self.accounts = int((self.table[:, ACCOUNT] >= 0).sum())
 
     def fixed(self, part) -> np.ndarray:
@@ -53,6 +56,21 @@ class Calls:
     def driven(self) -> bool:
         """Whether rows depend on time."""
         return bool(self._driven)
+
+    @property
+    def prepares(self) -> bool:
+        """Whether any part has numbers that are made anew for each step."""
+        return bool(self._prepared)
+
+    def prepare(self, state, loads: np.ndarray) -> None:
+        """Take the numbers that parts have for a step from ``state``, with its loads (6, N)."""
+        blocks, begin = [self._lasting], self._lasting.size
+        for k in self._prepared:
+            block = self._parts[k].prepare(state, loads)
+            self.table[k, FIXED : FIXED_END + 1] = begin, begin + block.size
+            blocks.append(block)
+            begin += block.size
+        self.numbers = np.concatenate(blocks)
 
     def rows_at(self, times: np.ndarray) -> np.ndarray:
         """Return the driven rows side by side (T, n) at the first T of the times; else (1, 0)."""

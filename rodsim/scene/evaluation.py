@@ -23,6 +23,8 @@ class Evaluation:
         """Let each part add to the loads (6, N), to u (6, N) of the rods or v (3, P) of tracers."""
         now, calls = self._calls.rows_at(np.array([state.time]))[0], self._calls
         rods, geometry = self.scene.rods.tables, state.geometry
+        if calls.prepares:
+            calls.prepare(state, loads)
         evaluate(calls.table, calls.numbers, now, rods, geometry, loads, (u, v), self.own)
 
     def left_by(self, part: Part) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rodsim.compiled.parts import FLOW, FORCE, HOLD, RELEASE
+from rodsim.compiled.parts import FLOW, FORCE, HOLD, RELEASE, TRACERS
 from rodsim.scene.bodies import observe_nodes
 from rodsim.scene.evaluation import Evaluation
 from rodsim.scene.state import Scene, State
@@ -14,7 +14,9 @@ class Observer:
     def __init__(self, scene: Scene):
         self.scene = scene
         self._forces = Evaluation(scene, scene.parts.of(FORCE))
-        self._flows = Evaluation(scene, scene.parts.of(RELEASE, FLOW, HOLD))
+        # What parts say of their preparation they can say only of a state they have prepared for.
+        tracers = (TRACERS,) if any(part.prepare for part in scene.parts) else ()
+        self._flows = Evaluation(scene, scene.parts.of(RELEASE, FLOW, HOLD, *tracers))
 
     def __call__(
         self, state: State, rates: np.ndarray | None = None, ledger: np.ndarray | None = None

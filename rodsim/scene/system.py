@@ -38,6 +38,7 @@ class RodSystem:
         self.evaluations = 0
         self.seconds = 0.0
         self._shape = (6, n)
+        self._prepared_for = None  # the start of the step that parts have their numbers for
         geometry = np.empty((3, n)), np.empty((3, 3, n)), np.empty((3, p))
         self._work = geometry, np.empty((6, n)), np.empty((accounts, 6, n))
         self._rows = None if self._calls.driven else self._calls.rows_at(np.zeros(1))
@@ -93,6 +94,16 @@ class RodSystem:
         self.run_stages(t, base, y, out)
         return out
 
+    def at_start(self, state: State, velocities: np.ndarray | None) -> np.ndarray:
+        """Return the velocities at the start of a step.
+
+        ``velocities`` : at the end of the step before, which serve where there are any, unless
+        parts freeze some of their numbers over a step: then they are evaluated with the new ones.
+        """
+        if velocities is not None and not self._calls.prepares:
+            return velocities
+        return self.velocities(state.time, state, self.zeros(), self.zeros())
+
     def run_stages(
         self, t, base, Y, out, table=NO_STAGES, begin=1, end=1, size=0.0, f0=NOTHING, g=NOTHING
     ):
@@ -106,9 +117,11 @@ class RodSystem:
         if rows is None:
             rows = self._calls.rows_at(t + size * table[begin - 1 :, 4])
             end = begin + len(rows) - 1
+        start, rods = perf_counter(), self.scene.rods.tables
+        if self._calls.prepares and base is not self._prepared_for:
+            self._calls.prepare(base, loads_of(self.scene, base))
+            self._prepared_for = base
         calls, Y = (self._calls.table, self._calls.numbers), Y.reshape(-1, self.size)
-        rods = self.scene.rods.tables
-        start = perf_counter()
         run_stages(
             *calls, rows, rods, base.geometry, self._work, table, begin, end, size, f0, g, Y, out
         )

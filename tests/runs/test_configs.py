@@ -311,6 +311,33 @@ def test_michells_ring_is_stable_up_to_the_twist_of_its_header(twist, growing):
     assert find_rest(scene, saddle=True).growing == growing
 
 
+@pytest.mark.compiled
+@pytest.mark.long
+def test_the_suspension_tumbles_as_its_header_says(tmp_path):
+    with run("suspension", tmp_path) as trajectory:
+        assert trajectory.observable("sum_error").max() <= 1e-5
+        fibres = trajectory.position.reshape(21, 24, 101, 3)
+        chords = fibres[:, :, -1] - fibres[:, :, 0]
+        along = chords / np.linalg.norm(chords, axis=2, keepdims=True)
+        aligned = (along[..., 0] * along[..., 2]).mean(axis=1)
+        assert aligned[[0, -1]] == pytest.approx([-0.237, 0.189], abs=2e-3)
+        energy = total(trajectory)
+        assert energy[-1] == pytest.approx(9.1e-3, rel=0.01)
+        ledger = trajectory.observable("external_work") - trajectory.observable("dissipated")
+        assert energy[-1] == pytest.approx(ledger[-1], rel=0.02)
+
+
+@pytest.mark.compiled
+@pytest.mark.long
+def test_the_long_coil_unwinds_as_its_header_says(tmp_path):
+    with run("long_coil", tmp_path) as trajectory:
+        assert trajectory.observable("sum_error").max() <= 1e-5
+        assert total(trajectory)[[0, -1]] == pytest.approx([0.01575, 0.01380], rel=2e-3)
+        x = trajectory.position
+        apart = np.linalg.norm(x[:, -1] - x[:, 0], axis=1)
+        assert apart[[0, -1]] == pytest.approx([46.6, 48.1], abs=0.1)
+
+
 def test_every_config_is_tested_here():
     assert {path.stem for path in CONFIGS.glob("*.yaml")} == {
         "open_rod", "open_rod_half_twist", "closed_ring", "closed_ring_low_twist", "flagellum",
@@ -318,7 +345,7 @@ def test_every_config_is_tested_here():
         "plasmid", "traced_filament",
         "sedimenting_fibre", "fibre_in_shear", "tethered_pair",
         "plectoneme", "two_rods_crossing",
-        "swimmer_at_wall", "fibre_settling_on_wall",
+        "swimmer_at_wall", "fibre_settling_on_wall", "suspension", "long_coil",
         "bacterium", "two_swimmers", "rotating_helix", "cilium",
         "michell_ring",
     }  # fmt: skip

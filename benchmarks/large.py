@@ -1,0 +1,120 @@
+"""The fast sum against the exact one: time, error, lists and memory up to 1 000 000 points."""
+
+import time
+
+import click
+import numpy as np
+from common import Timed, benchmark, curve, interleaved
+from curves import EPSILON, SCENES
+from tables import Spread, Table
+
+VISCOSITY = 0.7
+SIZES, QUICK = (1000, 10_000, 100_000, 1_000_000), (1000, 10_000)
+ACCURACIES, QUICK_ACCURACIES = (1e-3, 1e-5, 1e-7), (1e-3, 1e-5)
+EVERY = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)  # of the picture of error against cost
+TARGETS = 300  # at which the exact sum is computed and timed
+COLUMNS = {
+    "scene": "scene",
+    "points": "M",
+    "accuracy": "asked",
+    "ratio": "exact / fast",
+    "fast": "fast, ms",
+    "u": "error of u",
+    "w": "error of w",
+    "lists": "lists, ms",
+    "prepare": "lists and measuring, ms",
+    "near": "pairs a point",
+    "bytes": "bytes a point",
+}
+
+
+@benchmark(full=5, short=3)
+@click.option("--points", multiple=True, type=click.IntRange(1000), help="M; again for more.")
+@click.option(
+    "--scene", "names", multiple=True, type=click.Choice(tuple(SCENES)), help="Again for more."
+)
+@click.option("--threads", type=click.IntRange(1), default=1, show_default=True)
+def main(quick, repeats, points, names, threads):
+    """Measure fast sums of random loads, the worst case, on one thread.
+
+    The exact sum is timed at 300 of the points and scaled; both in CPU time, in rounds, so that
+    what others do meanwhile disturbs little and both sides alike. Errors are relative, root mean
+    square over those points.
+    """
+    import numba
+
+    numba.set_num_threads(threads)
+    sizes = points or (QUICK if quick else SIZES)
+    accuracies = QUICK_ACCURACIES if quick else ACCURACIES
+    rows = []
+    for name in names or SCENES:
+        for size in sizes:
+            if size == 1_000_000 and name != "suspension":
+                continue  # minutes for each
+            rows += [measure(name, size, a, repeats) for a in accuracies]
+    picture = [measure("coil, 25 epsilon", 10_000, a, repeats) for a in EVERY]
+    tables = [Table("Fast sums", COLUMNS, rows), Table("Error against cost", COLUMNS, picture)]
+    return tables, lambda *axes: draw(rows, picture, *axes)
+
+
+def measure(name, size, accuracy, repeats):
+    """Return the row of a scene."""
+    from rodsim.flows.fast.plan import RodSum, relative_error
+
+    X, counts = SCENES[name](size)
+    loads = np.random.default_rng(3).normal(size=(6, size))
+    loads[3:] *= EPSILON
+    begin = time.process_time()
+    fast = RodSum(counts, accuracy, EPSILON, VISCOSITY, "algebraic7")
+    begin = time.process_time()
+    fast.count(X)
+    lists = time.process_time() - begin
+    begin = time.process_time()
+    tables = fast.prepare(X, loads)
+    prepare = time.process_time() - begin
+    sample = np.unique(np.linspace(0, size - 1, TARGETS).astype(int))
+    targets, exact = np.ascontiguousarray(X[:, sample]), np.zeros((6, len(sample)))
+    out = np.zeros_like(loads)
+
+    def quick():
+        out[:] = 0.0
+        fast.kernel(tables, X, loads, False, out)
+
+    def slow():
+        exact[:] = 0.0
+        fast.exact(targets, X, loads, EPSILON, VISCOSITY, exact)
+
+    calls = {
+        "fast": Timed(quick, clock=time.process_time),
+        "exact": Timed(slow, clock=time.process_time),
+    }
+    spent = interleaved(calls, repeats, f"{name}, {size}, {accuracy:g}")
+    whole = np.array(spent["exact"]) * size / len(sample)
+    u, w = relative_error(out[:, sample], exact)
+    return {
+        "scene": name, "points": size, "accuracy": accuracy,
+        "ratio": Spread.of(whole / np.array(spent["fast"])), "fast": Spread.of(spent["fast"], 1e3),
+        "exact": Spread.of(whole, 1e3), "u": u, "w": w, "lists": 1e3 * lists,
+        "prepare": 1e3 * prepare, "near": fast.pairs / size, "bytes": tables.nbytes / size,
+    }  # fmt: skip
+
+
+def draw(rows, picture, left, right):
+    """Left: exact and fast against M; right: error against the cost of the sum."""
+    for k, name in enumerate({row["scene"]: 0 for row in rows}):
+        chosen = [row for row in rows if row["scene"] == name and row["accuracy"] == 1e-5]
+        curve(left, chosen, "points", "fast", label=f"{name}, 1e-5", color=f"C{k}")
+        if k == 0:
+            curve(left, chosen, "points", "exact", label="exact", color="k", linestyle="--")
+    left.set(xscale="log", yscale="log", xlabel="M", ylabel="an evaluation, ms")
+    left.legend(fontsize="small")
+    cost = [row["fast"].median for row in picture]
+    right.loglog(cost, [row["u"] for row in picture], marker="o", label="u")
+    right.loglog(cost, [row["w"] for row in picture], marker="s", label="w")
+    right.axvline(picture[-1]["exact"].median, color="k", linestyle="--", label="exact")
+    right.set(xlabel="an evaluation of 10 000 points, ms", ylabel="relative error")
+    right.legend()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,80 @@
+"""States at rest of rods that are held, and of rods in contact."""
+
+from math import pi
+
+import numpy as np
+import pytest
+
+pytest.importorskip("scipy")
+
+from rodsim.case import case_from_mapping
+from rodsim.forces.near import repulsion_stiffness
+from rodsim.rest.solve import find_rest
+from rodsim.scene.build import build_scene
+from rodsim.scene.evaluation import loads_of
+from rodsim.scene.state import State
+
+MODULI = {"bending": 1.3, "twisting": 0.9, "shear": 52.0, "stretch": 52.0}
+
+
+def column(load, hold="clamped", points=31, length=6.0):
+    rod = {
+        "shape": {"kind": "straight", "points": points, "length": length},
+        "moduli": MODULI,
+        "start": {"hold": hold},
+        "loads": {"tip": {"at": "end", "force": [0.0, 0.0, -load * 1.3 / length**2]}},
+    }
+    case = {"fluid": {"viscosity": 0.3, "epsilon": 0.5}, "rods": {"column": rod},
+            "time": {"end": 2.0}}  # fmt: skip
+    return build_scene(case_from_mapping(case))
+
+
+@pytest.mark.parametrize(("load", "growing"), [(0.98 * pi**2 / 4, 0), (1.02 * pi**2 / 4, 2)])
+def test_euler_buckling_of_a_clamped_column(load, growing):
+    """pi^2/4 = 2.4674; shear and stretch lower it by F/b = 0.2 % here, the lattice by 0.1 %.
+
+    Two growing modes, one for each direction across the column."""
+    found = find_rest(column(load), saddle=True)
+    assert found.failure == ""
+    assert found.growing == growing
+
+
+def test_bodies_are_refused():
+    case = {
+        "fluid": {"viscosity": 0.3, "epsilon": 0.5},
+        "bodies": {"cell": {"shape": {"kind": "sphere", "radius": 0.7, "points": 20,
+                                      "origin": [0.0, 0.0, -0.7]}}},
+        "rods": {"tail": {"shape": {"kind": "straight", "points": 7, "length": 1.2},
+                          "moduli": MODULI, "start": {"hold": "clamped", "to": "cell"}}},
+        "time": {"end": 2.0},
+    }  # fmt: skip
+    assert "not bodies" in find_rest(build_scene(case_from_mapping(case))).failure
+
+
+def test_stiffness_of_contact_is_that_of_its_loads():
+    """Central differences of step 1e-6: errors of h^2 and of rounding/h, both about 1e-10."""
+    rod = {"moduli": MODULI, "shape": {"kind": "straight", "points": 9, "length": 2.3}}
+    turned = {**rod["shape"], "rotate": {"axis": [1, 0.2, 0], "degrees": 70},
+              "origin": [0.31, 0.9, 0.7]}  # fmt: skip
+    case = {
+        "fluid": {"viscosity": 0.3, "epsilon": 0.6}, "contact": {},
+        "rods": {"one": rod, "two": {**rod, "shape": turned}}, "time": {"end": 2.0},
+    }  # fmt: skip
+    scene = build_scene(case_from_mapping(case))
+    part = next(part for part in scene.parts if part.name == "contact")
+    n, X = scene.rods.points, scene.initial.position
+    found = np.zeros((n, 3, n, 3))
+    for i, j, block in zip(*repulsion_stiffness(X, scene.rods, part.fixed), strict=True):
+        found[i, :, j] += block
+    assert abs(found).max() > 1.0
+    alone = build_scene(case_from_mapping({**case, "contact": None}))
+
+    def loads(position):
+        state = State(0.0, position, scene.initial.director, scene.initial.tracer)
+        return (loads_of(scene, state) - loads_of(alone, state))[:3]
+
+    for k, c in ((2, 0), (5, 1), (12, 2)):
+        step = np.zeros_like(X)
+        step[c, k] = 1e-6
+        slope = -(loads(X + step) - loads(X - step)) / 2e-6
+        np.testing.assert_allclose(found[:, :, k, c].T, slope, atol=1e-7)
