@@ -66,10 +66,10 @@ def tracer_paths(replay: Replay, seeds, first: int, last: int, progress=None) ->
     for row in range(last - first):
         before, after = after, replay.settled_sources(first + row + 1)
         begin, end = replay.run.time[first + row : first + row + 2]
-        moved = _advance(before, after, begin, end, np.vstack([position[row], before.position.T]))
+        moved = _advance(before, after, begin, end, np.vstack([position[row], before.points]))
         moved[moved[:, 2] < replay.scene.floor] = np.nan
         position[row + 1] = moved[: len(seeds)]
-        missed = np.abs(moved[len(seeds) :] - after.position.T).max()
+        missed = np.abs(moved[len(seeds) :] - after.points).max()
         miss[row] = np.inf if np.isnan(missed) else missed
         if progress:
             progress.update((row + 1) / (last - first), f"t = {end:.4g}")

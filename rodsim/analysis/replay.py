@@ -7,9 +7,10 @@ from functools import cached_property
 
 import numpy as np
 
+from rodsim.blocks.skins import between, with_loads
 from rodsim.case.methods import METHODS
 from rodsim.compiled.parts import TRACERS
-from rodsim.scene.evaluation import fluid_velocity, loads_of
+from rodsim.scene.evaluation import Exerted, exerted_by, fluid_velocity
 from rodsim.scene.restore import restore_scene, stored_state
 from rodsim.scene.state import Scene, State
 
@@ -20,15 +21,26 @@ SETTLING = 10  # Euler steps that let the fastest modes of a frame come to rest
 
 @dataclass(frozen=True)
 class Sources:
-    """Where the rods are and what they exert on the fluid at a time, and the scene they are in.
+    """Where all nodes are, what they and the bodies exert on the fluid at a time, and the scene.
 
-    position (3, N), loads (6, N): point forces, then point torques.
+    position (3, N): points of rods, then other nodes. The loads of a body's node are those of its
+    surface together, which drives the fluid in its place.
     """
 
     time: float
     position: np.ndarray
-    loads: np.ndarray
+    exerted: Exerted
     scene: Scene
+
+    @property
+    def loads(self) -> np.ndarray:
+        """Point forces, then point torques, of all nodes: (6, N)."""
+        return self.exerted.loads
+
+    @property
+    def points(self) -> np.ndarray:
+        """Positions (n, 3) of the points of the rods."""
+        return self.position[:, : self.scene.rods.points].T
 
     def velocity(self, points) -> np.ndarray:
         """Return the velocity (n, 3) of the fluid at points (n, 3): what tracers there would have.
@@ -37,19 +49,24 @@ class Sources:
         """
         points = np.ascontiguousarray(np.asarray(points, float).T)
         state = State(self.time, self.position, NO_TRIADS, points)
-        return fluid_velocity(self.scene, state, self.loads).T.copy()
+        return fluid_velocity(self.scene, state, self.exerted).T.copy()
 
     def pressure(self, points) -> np.ndarray:
         """Return the pressure (n,) at points (n, 3), the sum of what the parts have of it."""
         points = np.ascontiguousarray(np.asarray(points, float).T)
-        given = (part.pressure for part in self.scene.parts if part.pressure)
-        sources = points, self.position, self.loads, self.time
-        return sum(pressure(*sources) for pressure in given)
+        given, n = [part for part in self.scene.parts if part.pressure], self.scene.rods.points
+        sources = points, *(np.ascontiguousarray(a[:, :n]) for a in (self.position, self.loads))
+        left = (self.exerted.of(part, self.scene) for part in given)
+        pairs = zip(given, left, strict=True)
+        return sum(part.pressure(*sources, self.time, numbers) for part, numbers in pairs)
 
     def towards(self, other: Sources, share: float) -> Sources:
         """Return the sources a share of the way from these to others, along straight lines."""
         pairs = ((getattr(s, n) for s in (self, other)) for n in ("time", "position", "loads"))
-        return Sources(*((1.0 - share) * a + share * b for a, b in pairs), self.scene)
+        time, position, loads = ((1.0 - share) * a + share * b for a, b in pairs)
+        lefts = zip(self.exerted.left, other.exerted.left, strict=True)
+        left = tuple(between(a, b, share) for a, b in lefts)
+        return Sources(time, position, Exerted(loads, left), self.scene)
 
 
 class Replay:
@@ -77,9 +94,9 @@ class Replay:
         return [part.drive for part in self.scene.parts.of(TRACERS) if part.pressure is None]
 
     def sources(self, frame: int) -> Sources:
-        """Return what the rods of a frame exert on the fluid, eqs. (30), (31)."""
+        """Return what a frame exerts on the fluid: rods by eqs. (30), (31), and what holds them."""
         state = stored_state(self.run, frame)
-        return Sources(state.time, state.position, loads_of(self.scene, state), self.scene)
+        return Sources(state.time, state.position, exerted_by(self.scene, state), self.scene)
 
     def settled_sources(self, frame: int) -> Sources:
         """Return the same without what the fastest modes of the rods hold by mistake.
@@ -93,15 +110,18 @@ class Replay:
         the velocity, so frames that are better than that are left as they are: the first one, those
         of fixed steps, and those of a run at a tolerance of 1e-6 or less.
         """
-        state, loads = stored_state(self.run, frame, self.scene.ledger), []
+        state, after = stored_state(self.run, frame, self.scene.ledger), []
         rate = self._machinery[1].estimate(state) if frame and self.rough else 0.0
         if not (np.isfinite(rate) and rate > 0.0):
             return self.sources(frame)
-        time, position = state.time, state.position
+        time, position, now = state.time, state.position, exerted_by(self.scene, state)
         for _ in range(2):
             state = self._settle(state, 1.0 / rate)
-            loads.append(loads_of(self.scene, state))
-        return Sources(time, position, 2.0 * loads[0] - loads[1], self.scene)
+            after.append(exerted_by(self.scene, state))
+        loads = 2.0 * after[0].loads - after[1].loads
+        lefts = zip(now.left, *(exerted.left for exerted in after), strict=True)
+        left = tuple(with_loads(own, (2.0, a), (-1.0, b)) for own, a, b in lefts)
+        return Sources(time, position, Exerted(loads, left), self.scene)
 
     def _settle(self, state, step):
         system, _ = self._machinery
@@ -114,4 +134,4 @@ class Replay:
     def settled_velocity(self, frame: int) -> np.ndarray:
         """Return the velocity (N, 3) of all points of the rods in a frame."""
         sources = self.settled_sources(frame)
-        return sources.velocity(sources.position.T)
+        return sources.velocity(sources.points)

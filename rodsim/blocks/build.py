@@ -209,7 +209,7 @@ def _build(case, scene) -> list[Part]:
              statics=_statics(blocks, scene)),
         Part("held", RELEASE, "rodsim.blocks.hold:release", **shared),
         Part("held", HOLD, "rodsim.blocks.hold:hold", **shared, external=report.driven, sums=sums,
-             gauges=report.gauges, report=report, series=report.series),
+             gauges=report.gauges, report=report, series=report.series, labels=report.labels),
     ]  # fmt: skip
     if scene.bodies:
         parts.append(

@@ -52,6 +52,18 @@ class Report:
             found.append(("hook_energy", (len(self.hooks),), ENERGY))
         return tuple(found)
 
+    @property
+    def labels(self) -> dict[str, tuple[str, ...]]:
+        """Whose the rows of observables are: bodies and ends of rods such as ``tail.start``."""
+        held = tuple(self.blocks[b].name for b in self.held)
+        motors, hooks = (
+            tuple(self.members[q].name for q in chosen) for chosen in (self.motors, self.hooks)
+        )
+        anchors = ("force", "torque", "impulse", "angular_impulse")
+        found = {f"anchor_{name}": held for name in anchors if held}
+        found |= {f"motor_{name}": motors for name in ("torque", "rate", "angle") if motors}
+        return found | ({"hook_energy": hooks} if hooks else {})
+
     def __call__(self, fixed, rates, state) -> tuple[dict, np.ndarray]:
         """Return observables by name, and the correction of the net force and torque (6,).
 
@@ -82,6 +94,8 @@ class Report:
         _, forces, torques, motor_torques, motor_rates = np.split(gauges, sizes)
         return forces.reshape(-1, 3), torques.reshape(-1, 3), motor_torques, motor_rates
 
-    def pressure(self, points, sources, loads, t):
-        """Return the pressure (T,) of the surfaces; computed where their loads are known."""
-        return np.zeros(points.shape[1])
+    def pressure(self, points, sources, loads, t, left):
+        """Return the pressure (T,) of the surfaces at points (3, T)."""
+        from rodsim.blocks.skins import surface_pressure
+
+        return surface_pressure(self.scene, points, left)

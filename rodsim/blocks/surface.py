@@ -23,6 +23,7 @@ MATCHED = {  # epsilon, inset: fitted at n = 50 to 600, to 5e-4 and 3e-4
     "algebraic7": ((0.4911, 0.03519, 0.00615), (0.1016, 0.01418, 0.00138)),
     "algebraic9": ((0.7462, 0.05691, 0.00759), (0.0794, 0.01134, 0.00075)),
 }
+FEWEST, MOST = 20, 2000  # points
 CELLS = 4096  # of a meridian, on which its area is summed up
 # A table of points has no normals: they stay on the surface, and this blob makes its drag right.
 ON_SURFACE, NEIGHBOURS, PACKING = {"algebraic7": 0.37, "algebraic9": 0.61}, 6, 0.93

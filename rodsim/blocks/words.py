@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
+from rodsim.blocks.surface import FEWEST, MOST
 from rodsim.case.expressions import Expression
 from rodsim.case.fields import (
     Column,
@@ -22,8 +23,6 @@ from rodsim.case.fields import (
     tag_of,
 )
 from rodsim.case.placed import Rotate
-
-FEWEST, MOST = 20, 2000  # points of a surface
 
 
 def _of_time(value: Any) -> Any:

@@ -59,8 +59,8 @@ def converge(case_path, axes, report, overrides, threads, quiet):
 
     Runs the case again and again: at other tolerances (rkc) and steps (euler, rk4), with other
     numbers of points (length and epsilon fixed), with other epsilons (a sensitivity) and, where it
-    is asked for, with fast sums of other accuracies, each held against a reference that it computes
-    itself. Ctrl-C keeps what has been measured.
+    is asked for, with fast sums of other accuracies and with other numbers of points of bodies,
+    each held against a reference that it computes itself. Ctrl-C keeps what has been measured.
     """
     case = load(case_path, overrides)
     say_warnings(case)

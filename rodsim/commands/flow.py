@@ -95,7 +95,7 @@ def _flow(run, at, grid_text, resolution, path, colour, arrows, raw, quiet):
 
     replay = Replay(run)
     frame = _frame(run, at, run.frames - 1, quiet)
-    grid = make_grid(grid_text, run.read("position", frame), resolution, floor=run.wall)
+    grid = make_grid(grid_text, _points(run, frame), resolution, floor=run.wall)
     flow = flow_at(replay, frame, grid, raw)
     if replay.without_pressure and not quiet:
         names = ", ".join(replay.without_pressure)
@@ -123,7 +123,7 @@ def _tracers(run, at, until, grid_text, resolution, path, quiet):
         from rodsim.errors import UsageError
 
         raise UsageError("tracers need a time --until after the one --at which they start")
-    grid = make_grid(grid_text, run.read("position", first), resolution, SEEDS, run.wall)
+    grid = make_grid(grid_text, _points(run, first), resolution, SEEDS, run.wall)
     seeds = grid.points[grid.points[:, 2] >= replay.scene.floor]
     if len(seeds) < len(grid.points) and not quiet:
         click.echo(f"{len(grid.points) - len(seeds)} tracers would start below the wall", err=True)
@@ -138,6 +138,13 @@ def _tracers(run, at, until, grid_text, resolution, path, quiet):
         from rodsim.export.flow import export_tracers
 
         export_tracers(paths.time, paths.position, run.units, path)
+
+
+def _points(run, frame):
+    """Return the points of rods and of the surfaces of bodies, which a grid is to hold."""
+    import numpy as np
+
+    return np.concatenate([run.read("position", frame), run.surfaces(frame)])
 
 
 def _say_miss(run, replay, paths, quiet):

@@ -12,7 +12,7 @@ from rodsim.units import unit_text
 def describe_start(scene, system, units) -> list[str]:
     """Return two lines for each rod; ``units``: names of length, mass and time."""
     rods, lines = scene.rods, []
-    _, seen = system.observe(scene.initial, np.zeros((6, rods.points)))
+    _, seen = system.observe(scene.initial, np.zeros((6, scene.nodes)))
     position, director = scene.initial.position, scene.initial.director
     for r, name in enumerate(rods.names):
         nodes = slice(int(rods.first[r]), int(rods.first[r] + rods.count[r]))

@@ -11,6 +11,7 @@ from rodsim.commands.groups import (
     describe_rods,
     in_water_units,
 )
+from rodsim.commands.held import describe_held
 from rodsim.commands.stored_case import describe_stored
 from rodsim.commands.sums import describe_sums
 from rodsim.commands.touching import describe_contact, describe_links
@@ -46,6 +47,7 @@ def describe_case(case, refuse=False, threads=None) -> str:
         f"epsilon {scene.epsilon:.6g} {unit.length} "
         f"= {scene.epsilon / scene.rods.spacing[0]:.4g} spacings"
     )
+    lines += describe_held(case, scene)
     lines += describe_start(scene, machine.system, unit.names)
     if scene.wall is not None:
         lines.append(describe_wall(scene, unit.length))
@@ -163,6 +165,14 @@ def _endings(run):
     return [text for text in sentences if text]
 
 
+def _rows(run):
+    """Yield observables and whose their rows are, where they are not those of the rods."""
+    rods = [rod.name for rod in run.rods]
+    for name in run.observables:
+        if (labels := run.labels(name)) and labels != rods:
+            yield name, labels
+
+
 def _inputs(run) -> list[str]:
     """Return a line for each file the run began from: its digest, and whether it is the same."""
     from rodsim.scene.inputs import look_again, stored_digests
@@ -193,10 +203,14 @@ def describe_output(path) -> str:
         lines += describe_stored(run)
         lines += describe_links(run)
         lines += _endings(run)
+        for name in run.bodies:
+            kept = run.body(name)
+            lines.append(f"body {name}: {len(kept['points'])} points")
         if run.wall is not None:
             lines.append(f"wall: z = {run.wall:g} {unit['length']}, without slip")
         lines.append(f"fields: {', '.join(run.fields)}")
         lines.append(f"observables: {', '.join(run.observables)}")
+        lines += [f"{name} of {', '.join(labels)}" for name, labels in _rows(run)]
         lines += [
             f"{key}: {value if isinstance(value, str) else format(value, '.6g')}"
             for key, value in run.runtime.items()

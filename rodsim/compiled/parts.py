@@ -105,9 +105,11 @@ class Part:
     external : it acts from outside, so the ledger is kept: what the fluid dissipates, and the work
     of the part, unless that is kept in an energy of its own (``potential``).
     observe : called with (state, row, scene), returns observables by name.
-    series : those beyond the ones of every scene, (name, shape, dimension) each.
-    pressure : called with (points (3, T), sources (3, N), loads (6, N), t), returns its share of
-    the pressure (T,).
+    series : those beyond the ones of every scene, (name, shape, dimension) each. labels : of those
+    with several rows, and of gauges, by name: whose each row is.
+    pressure : called with (points (3, T), sources (3, N), loads (6, N), t, left), returns its share
+    of the pressure (T,); left: the numbers that it shares with a part that holds, as the
+    evaluation of the loads has left them, else None.
     sums : sums that it calls, ``module:name`` each, whose addresses are put into the first places
     of ``fixed`` (an address is a whole number that float64 holds exactly).
     gauges : what it leaves in the last places of ``fixed``. Parts of a scene that
@@ -133,6 +135,7 @@ class Part:
     potential: bool = False
     observe: Callable | None = None
     series: tuple = ()
+    labels: dict = field(default_factory=dict)
     pressure: Callable | None = None
     sums: tuple[str, ...] = ()
     gauges: tuple[Gauge, ...] = ()

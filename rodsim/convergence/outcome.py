@@ -35,8 +35,10 @@ class Outcome:
 
     @property
     def pairs(self) -> int:
-        """Number of pairs in the sums of an evaluation."""
-        return self.scene.rods.points**2
+        """Number of pairs in the sums of an evaluation, those of surfaces with each other aside."""
+        points = self.scene.rods.points
+        surfaces = sum(body.surface.points.shape[1] for body in self.scene.bodies)
+        return points * (points + 2 * surfaces)
 
 
 @dataclass(frozen=True)
@@ -78,7 +80,8 @@ def solve(
             end = _march(machine, case.time.end, progress)
             seconds.append(perf_counter() - begin)
     system, integrator, initial = machine.system, machine.integrator, scene.initial
-    drift = end.position.mean(axis=1) - initial.position.mean(axis=1)
+    points = slice(scene.rods.points)
+    drift = (end.position - initial.position)[:, points].mean(axis=1)
     return Outcome(
         scene=scene,
         end=end,
@@ -130,7 +133,7 @@ def compare(run: Outcome, reference: Outcome) -> Errors:
     largest, rms = position_errors(ours.position, theirs.position)
     scale = max(abs(energy) for energy in reference.energies)
     speed = None
-    if reference.scene.parts.driven:
+    if swims(reference.scene):
         gap = np.linalg.norm(run.velocity - reference.velocity)
         speed = float(gap / np.linalg.norm(reference.velocity))
     return Errors(
@@ -142,6 +145,11 @@ def compare(run: Outcome, reference: Outcome) -> Errors:
         speed=speed,
         tracers=_tracers(run.end.tracer, reference.end.tracer),
     )
+
+
+def swims(scene) -> bool:
+    """Tell whether a scene goes somewhere: driven in time, or by motors or loads of bodies."""
+    return scene.parts.driven or bool(scene.bodies)
 
 
 def _tracers(ours, theirs):

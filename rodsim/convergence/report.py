@@ -7,6 +7,7 @@ import csv
 import numpy as np
 
 from rodsim.case.methods import ADAPTIVE, FIXED_STEP
+from rodsim.convergence.outcome import swims
 from rodsim.convergence.study import Result, Section, Study
 from rodsim.errors import FileError
 
@@ -15,6 +16,7 @@ METHODS = (*ADAPTIVE, *sorted(FIXED_STEP))  # in the order of the table
 HEADS = {
     "time": "error against run time: tolerance of rkc, step of euler and rk4",
     "points": "error of the discretisation: points at fixed length and epsilon",
+    "body_points": "error of the surfaces: points of bodies, all else fixed",
     "accuracy": "error of fast sums: their accuracy",
     "epsilon": "sensitivity to epsilon: another blob is another model, this is no error",
 }
@@ -41,6 +43,8 @@ def fitted_order(section: Section, method: str) -> float | None:
 def _size(section, result):
     if section.axis == "points":
         return 1.0 / result.outcome.scene.rods.segments.sum()
+    if section.axis == "body_points":
+        return result.row.value**-0.5
     return 1.0 / result.outcome.steps
 
 
@@ -53,7 +57,7 @@ def text(study: Study) -> str:
 
 
 def _section(study, section):
-    unit, swims = study.case.units.length, study.scene.parts.driven
+    unit, moving = study.case.units.length, swims(study.scene)
     carries = study.scene.initial.tracer.size > 0
     yield HEADS[section.axis]
     own = "" if section.own is None else f": good to {section.own.position:.1e} {unit}"
@@ -64,14 +68,16 @@ def _section(study, section):
     yield f"largest and rms distance in {unit}, wall time in seconds; energy over the larger of its"
     yield "first and last value, speed over itself; ~: no larger than what the reference may err"
     names = ["method", "value", "largest", "of length", "rms", "angle/deg", "energy"]
-    names += ["speed"] * swims + ["tracers"] * carries + ["solve/s", "evaluations", "pairs x evals"]
+    names += (
+        ["speed"] * moving + ["tracers"] * carries + ["solve/s", "evaluations", "pairs x evals"]
+    )
     yield "  ".join(f"{name:>13}" for name in names)
     for result in sorted(section.results, key=_order):
-        yield "  ".join(f"{cell:>13}" for cell in _cells(section, result, swims, carries))
+        yield "  ".join(f"{cell:>13}" for cell in _cells(section, result, moving, carries))
     for method in dict.fromkeys(result.row.method for result in section.results):
         order = fitted_order(section, method)
         if order is not None:
-            what = "space" if section.axis == "points" else method
+            what = {"points": "space", "body_points": "surfaces"}.get(section.axis, method)
             yield f"observed order of {what}: {order:.2f}"
 
 

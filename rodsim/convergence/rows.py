@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from rodsim.blocks.surface import FEWEST, MOST
 from rodsim.case.methods import FIXED_STEP
 
-AXES = ("tolerance", "step", "points", "epsilon", "accuracy")
+AXES = ("tolerance", "step", "points", "body_points", "epsilon", "accuracy")
 ACCURACIES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)  # of fast sums
 EXACT = 0.0
 TOLERANCES = tuple(10.0 ** (k / 2) for k in range(4, -5, -1))  # times the case's own
@@ -16,6 +17,7 @@ TIGHTEST = 1e-12
 SPACE_TOLERANCE = 1e-6  # in a study of space no error in time is to be seen
 STABLE = 0.9  # of the limit of stability: the longest step of a fixed-step method
 ROWS = {"euler": 2, "rk4": 1}  # the longest step and its half; RK4 has no error to be seen there
+BODY_LEVELS = (0.5, 1.0, 2.0, 4.0)  # of the case's own points of bodies
 SENSITIVITY = (0.5, 2**-0.5, 2**0.5, 2.0)  # epsilon over the case's own
 
 
@@ -127,6 +129,26 @@ def points_rows(case, rate, epsilon) -> list[Row]:
         for f in space_levels(case)
         if total
     ]  # fmt: skip
+
+
+def body_points(case) -> dict[str, int]:
+    """Return the number of points of each body; those from a file have none of their own."""
+    shapes = {name: body.shape for name, body in (case.bodies or {}).items()}
+    return {name: shape.points for name, shape in shapes.items() if shape.kind != "file"}
+
+
+def body_rows(case, rate) -> list[Row]:
+    """Numbers of points of the bodies, of all together; the last is the finest."""
+    own, found = body_points(case), []
+    for factor in BODY_LEVELS:
+        numbers = {name: 2 * round(0.5 * factor * n) for name, n in own.items()}
+        if min(numbers.values()) < FEWEST or max(numbers.values()) > MOST:
+            continue
+        keys = (f"bodies.{name}.shape.points={n}" for name, n in numbers.items())
+        cost = guess(case, rate, SPACE_TOLERANCE) * factor**2
+        value = sum(numbers.values())
+        found.append(Row("body_points", "rkc", value, (*keys, *rkc(SPACE_TOLERANCE)), cost))
+    return found
 
 
 def epsilon_rows(case, rate, epsilon) -> list[Row]:

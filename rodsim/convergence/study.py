@@ -115,6 +115,11 @@ class Study:
             found = rows.points_rows(case, rate, self.scene.epsilon)
             words = f"{found[-1].value:.0f} points; its error by order 2 from {found[-2].value:.0f}"
             plan.append((Section("points", words), found[::-1]))
+        if "body_points" in self.axes:
+            self._need_bodies()
+            found = rows.body_rows(case, rate)
+            words = f"{found[-1].value} points of bodies, held against {found[-2].value}"
+            plan.append((Section("body_points", words), found[::-1]))
         if "epsilon" in self.axes:
             own = Row("epsilon", "rkc", self.scene.epsilon, rows.rkc(rows.SPACE_TOLERANCE),
                       rows.guess(case, rate, rows.SPACE_TOLERANCE))  # fmt: skip
@@ -134,17 +139,31 @@ class Study:
                     "all: leave 'points' out of --in"
                 )
 
+    def _need_bodies(self):
+        bodies, formed = self.case.bodies or {}, rows.body_points(self.case)
+        if not formed or len(formed) < len(bodies) or len(rows.body_rows(self.case, 1.0)) < 2:
+            why = "a body comes from a file, which gives its points once and for all"
+            if not bodies:
+                why = "there are no bodies"
+            elif len(formed) == len(bodies):
+                why = "the bodies have as many points as there can be, or as few"
+            raise UsageError(f"body_points: {why}: leave 'body_points' out of --in")
+
     def _section(self, section, part):
         first, *others = part
         reference = self._outcome(first, repeats=1)
         if not isinstance(reference, Outcome):
             raise UsageError(f"{section.axis}: the reference ({section.reference}) is {reference}")
         self.sections.append(section)
-        if section.axis in ("points", "accuracy"):
+        if section.axis in ("points", "body_points", "accuracy"):
             others = [*others, first]
         for row in others:
             result = self._result(row, first, reference)
-            if section.own is None and section.axis in ("time", "points") and result.errors:
+            if (
+                section.own is None
+                and section.axis in ("time", "points", "body_points")
+                and result.errors
+            ):
                 section.own = _own(section, result.errors)
             if result.outcome and row is not first and self._is_twin(row):
                 section.rounding = self._rounding(row, result.outcome)
@@ -156,10 +175,12 @@ class Study:
     def _is_twin(self, row):
         """Tell the runs that are made again from a start that differs in the last bit.
 
-        They are the check of the reference in time, and the case's own number of points.
+        They are the check of the reference in time, and the case's own numbers of points.
         """
         if row.axis == "points":
             return row.value == self.scene.rods.points
+        if row.axis == "body_points":
+            return row.value == sum(rows.body_points(self.case).values())
         return row.axis == "time"
 
     def _rounding(self, row, outcome):
@@ -214,7 +235,8 @@ class Study:
 def _own(section, errors):
     """Return the error of a reference from that of the next best run.
 
-    In time: the whole difference, an upper bound. In space: a third of it, for order 2.
+    In time and of bodies: the whole difference, an upper bound. Along rods: a third of it, for
+    order 2.
     """
     if section.axis != "points":
         return errors

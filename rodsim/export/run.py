@@ -12,6 +12,7 @@ from rodsim.analysis.wall import piece_of_wall
 from rodsim.errors import FileError
 from rodsim.export.polydata import write_polydata
 from rodsim.export.tables import component_heads, head, write_csv, write_npz
+from rodsim.output.layout import OF_BODIES
 from rodsim.output.vtkhdf import rod_lines
 
 SUFFIXES = (".vtkhdf", ".csv", ".npz")
@@ -23,8 +24,8 @@ def export_run(run, path, *, every=1, tracers=False, radius=None, progress=None)
     ``tracers``: the fluid markers instead of the rods (an .npz always has both). ``radius``: of
     the tubes in ParaView, a length; by default that of the cylinder that drags the fluid along
     as the rod does: ``epsilon e^(-1/2)``, or ``e^(-1)`` for algebraic9. With the rods an .vtkhdf
-    has a piece of the wall, where there is one, as a polygon of four points more, with NaN for
-    data. Raises FileError.
+    has the surfaces of bodies as triangles, and a piece of the wall, where there is one, as a
+    polygon of four points more; their points have NaN for data. Raises FileError.
     """
     frames = range(0, run.frames, every)
     if not frames:
@@ -40,12 +41,16 @@ def export_run(run, path, *, every=1, tracers=False, radius=None, progress=None)
         export_paths(path, run.time[list(frames)], _markers(run, frames), progress)
     else:
         radius, wall = radius or tube_radius(run), _wall(run, frames)
-        cells, rods = {"Lines": rod_lines(run.rods)}, list(range(len(run.rods)))
+        wall_first = run.points + run.surfaces(0).shape[0]
+        faces = (run.triangles + run.points).tolist()
         if len(wall):
-            cells |= {"Polygons": [list(range(run.points, run.points + len(wall)))]}
-            rods.append(-1)
-        moving = (_with(wall, *_frame(run, frame, radius)) for frame in frames)
-        numbers = {"rod": np.array(rods)}
+            faces.append(list(range(wall_first, wall_first + len(wall))))
+        cells = {"Lines": rod_lines(run.rods), **({"Polygons": faces} if faces else {})}
+        moving = (
+            _with(wall, *_with(run.surfaces(frame), *_frame(run, frame, radius)))
+            for frame in frames
+        )
+        numbers = {"rod": np.array([*range(len(run.rods)), *[-1] * len(faces)])}
         write_polydata(path, run.time[list(frames)], moving, cells, numbers, progress)
 
 
@@ -85,18 +90,18 @@ def _wall(run, frames):
     """Return the corners (4, 3) of the wall under the rods of all frames, (0, 3) without one."""
     if run.wall is None:
         return np.zeros((0, 3))
-    seen = (run.read("position", frame) for frame in frames)
+    seen = (np.vstack([run.read("position", k), run.surfaces(k)]) for k in frames)
     ends = np.concatenate([(position.min(axis=0), position.max(axis=0)) for position in seen])
     return piece_of_wall(ends, run.wall, math.inf)
 
 
-def _with(wall, position, data):
-    """Return positions and point data with those of the wall's corners, NaN, after them."""
+def _with(more, position, data):
+    """Return positions and point data with those of more points, NaN, after them."""
     joined = {}
     for name, values in data.items():
-        nothing = np.full((len(wall), *values.shape[1:]), np.nan)
+        nothing = np.full((len(more), *values.shape[1:]), np.nan)
         joined[name] = np.concatenate([values, nothing])
-    return np.concatenate([position, wall]), joined
+    return np.concatenate([position, more]), joined
 
 
 def _arc(run):
@@ -151,6 +156,13 @@ def _arrays(run, frames):
     arrays = {"time": run.time[frames], "step": run.steps[frames]}
     arrays |= {name: run.read(name, frames) for name in run.fields}
     arrays |= {name: run.observable(name, frames) for name in run.observables}
+    if run.bodies:
+        arrays["body_name"] = np.array(run.bodies)
+        arrays |= {f"body_{name}": run.of_bodies(name, frames) for name in OF_BODIES}
+    rods = [rod.name for rod in run.rods]
+    rows = {name: run.labels(name) for name in run.observables}
+    if rows := {name: labels for name, labels in rows.items() if labels not in ([], rods)}:
+        arrays["rows"] = json.dumps(rows)
     for key in ("name", "first", "count", "closed", "spacing", "moduli"):
         arrays[f"rod_{key}"] = np.array([getattr(rod, key) for rod in run.rods])
     units = {name: run.unit(name) for name in (*run.fields, *run.observables)}

@@ -184,7 +184,7 @@ def _pressure(flow, viscosity):
     if laplacian is None:
         return None
 
-    def pressure(points, sources, loads, t):
+    def pressure(points, sources, loads, t, left):
         """Return p_inf (T,) at points (3, T), 0 at the origin."""
         return viscosity * sum(points[i] * laplacian[i](t) for i in range(3))
 

@@ -40,7 +40,7 @@ def fluid_parts(scene) -> list[Part]:
 def pressure_of(scene, home):
     """Return what a part of the fluid has as its ``pressure``."""
 
-    def pressure(points, sources, loads, t):
+    def pressure(points, sources, loads, t, left):
         """Return the pressure (T,) at points (3, T), eq. (62); NaN below a wall."""
         from rodsim.flows.blobs import BLOBS
 

@@ -31,6 +31,7 @@ from rodsim.flows.blobs import (
     inverse_distance,
     stokeslet_scalars,
 )
+from rodsim.flows.sources import points_of_rods
 
 EIGHT_PI = 8.0 * math.pi
 
@@ -133,10 +134,11 @@ def _tracers_part(blob):
 
     @part
     def move_tracers(row, fixed, rods, state, loads, velocities):
+        sources, theirs = points_of_rods(rods, state[0], loads)
         if seven:
-            FLOW_7(state[2], state[0], loads, fixed[0], fixed[1], velocities[1])
+            FLOW_7(state[2], sources, theirs, fixed[0], fixed[1], velocities[1])
         else:
-            FLOW_9(state[2], state[0], loads, fixed[0], fixed[1], velocities[1])
+            FLOW_9(state[2], sources, theirs, fixed[0], fixed[1], velocities[1])
 
     return move_tracers
 

@@ -39,6 +39,7 @@ from rodsim.flows.blobs import (
     inverse_distance,
     stokeslet_scalars,
 )
+from rodsim.flows.sources import points_of_rods
 
 EIGHT_PI = 8.0 * math.pi
 
@@ -186,10 +187,11 @@ def _tracers_part(blob):
     def move_tracers(row, fixed, rods, state, loads, velocities):
         points, out = state[2], velocities[1]
         epsilon, viscosity, height = fixed[0], fixed[1], fixed[2]
+        sources, theirs = points_of_rods(rods, state[0], loads)
         if seven:
-            FLOW_7(points, state[0], loads, epsilon, viscosity, height, out)
+            FLOW_7(points, sources, theirs, epsilon, viscosity, height, out)
         else:
-            FLOW_9(points, state[0], loads, epsilon, viscosity, height, out)
+            FLOW_9(points, sources, theirs, epsilon, viscosity, height, out)
         for i in range(points.shape[1]):
             if points[2, i] < height - ON_WALL * epsilon:
                 out[:, i] = np.nan

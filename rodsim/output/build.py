@@ -73,7 +73,7 @@ def room(plan: Plan) -> int:
     count += 2 * sum(np.asarray(value).nbytes for value in plan.checkpoint.values())
     kept = [*plan.arrays.values(), *plan.bodies.values()]
     count += sum(np.asarray(array).nbytes for arrays in kept for array in arrays.values())
-    count += ROD_BYTES * len(plan.bodies)
+    count += ROD_BYTES * len(plan.bodies) + 2 * 8 * 4 * len(plan.triangles)  # cells of the view
     count += POINT_BYTES * (plan.points + plan.tracers) + ROD_BYTES * len(plan.rods)
     return count + FILE_BYTES
 
@@ -172,6 +172,8 @@ def _add_series(file, plan):
         group = file.require_group(series.where)
         value = preallocated(group, "value", (frames, *series.shape), np.nan)
         value.attrs["units"] = unit_text(series.dimension, plan.units)
+        if series.name in plan.labels:
+            value.attrs["rows"] = ", ".join(plan.labels[series.name])
         if series.where != CLOCK:
             group["time"], group["step"] = clock["time"], clock["step"]
 

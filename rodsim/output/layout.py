@@ -24,6 +24,7 @@ TRAJECTORY = "particles/trajectory"
 TRACERS = "particles/tracers/position"
 OBSERVABLES = "observables"
 BODIES, ROTORS = "particles/bodies", "particles/rotors"
+SURFACES = "particles/surfaces/position"  # of all bodies, one after another: (T, S, 3)
 CLOCK = f"{TRAJECTORY}/position"  # where time and step live; every other group links to them
 
 TIME, LENGTH, FORCE, ENERGY = (0, 0, 1), (0, 1, 0), (1, 1, -2), (1, 2, -2)
@@ -107,6 +108,7 @@ class Plan:
     later ones are like: arrays and numbers by name. extra : observables that not every scene has,
     (name, shape, dimension) each, and a place in the file where that is not /observables. bodies :
     what never changes of rigid bodies, arrays and numbers by name, by the name of the body.
+    labels : whose the rows of a series are, by its name.
     arrays : by rod, what its strain twist was made from beside the case's text, and where its held
     ends are at rest, by name.
     """
@@ -122,11 +124,21 @@ class Plan:
     extra: tuple = ()
     arrays: dict = field(default_factory=dict)
     bodies: dict = field(default_factory=dict)
+    labels: dict = field(default_factory=dict)
 
     @property
     def points(self) -> int:
         """Number N of points of all rods."""
         return self.rods.points
+
+    @property
+    def triangles(self) -> list[list[int]]:
+        """Return the corners of all faces of bodies, points of the surfaces counted after N."""
+        faces, first = [], self.points
+        for kept in self.bodies.values():
+            faces += (kept["triangles"] + first).tolist()
+            first += len(kept["skin"])
+        return faces
 
     def fields_stored(self) -> Iterator[Series]:
         """Yield what is stored of every point and tracer; the position always is."""
@@ -144,6 +156,10 @@ class Plan:
                 yield Series(name, f"{OBSERVABLES}/{name}", (len(self.rods),), dimension)
         for name, dimension in BALANCES.items():
             yield Series(name, f"{OBSERVABLES}/{name}", (3,), dimension)
+        yield from self.extra_stored()
+
+    def extra_stored(self) -> Iterator[Series]:
+        """Yield what only some scenes have, in the order of ``extra``."""
         for name, shape, dimension, *where in self.extra:
             yield Series(name, where[0] if where else f"{OBSERVABLES}/{name}", shape, dimension)
 

@@ -12,6 +12,7 @@ import numpy as np
 from rodsim.errors import FileError
 from rodsim.nodes import Rod, Rods
 from rodsim.output import layout
+from rodsim.output.bodies import OfBodies
 from rodsim.output.checkpoint import read_checkpoint
 from rodsim.output.guarded import GuardedFile
 from rodsim.output.layout import CLOCK, OBSERVABLES, TRACERS, TRAJECTORY
@@ -26,7 +27,7 @@ def open_trajectory(path: str | os.PathLike[str]) -> Trajectory:
     return Trajectory(path)
 
 
-class Trajectory:
+class Trajectory(OfBodies):
     """The frames of an output file that were committed when it was opened. A context manager.
 
     T frames, N points of all rods one after another, P tracers. Values are in the case's units.
@@ -97,43 +98,15 @@ class Trajectory:
         shape |= dict.fromkeys(layout.BALANCES, (3,))
         return self._values(f"{OBSERVABLES}/{name}", shape.get(name), frames)
 
-    @property
-    def bodies(self) -> list[str]:
-        """Names of the rigid bodies, in order."""
-        if "bodies" not in self._file.names("/"):
-            return []
-        get = self._file.attribute
-        return sorted(
-            self._file.names("bodies"), key=lambda name: get(f"bodies/{name}", "index", int)
-        )
+    def stores(self, where: str) -> bool:
+        """Tell whether the file has a series at a place such as ``observables/power``."""
+        group, _, name = where.rpartition("/")
+        above, _, last = group.rpartition("/")
+        return last in self._file.names(above or "/") and name in self._file.names(group)
 
-    def of_bodies(self, name: str, frames=slice(None)) -> np.ndarray:
-        """Return a quantity of all bodies, or less T: (T, B, 3), orientation (T, B, 4).
-
-        ``name``: position, orientation (quaternion w, x, y, z), velocity, angular_velocity.
-        """
-        if not self.bodies or name not in layout.OF_BODIES:
-            known = ", ".join(layout.OF_BODIES) if self.bodies else "no bodies"
-            raise FileError(f"{self.path}: has no {name} of bodies; it has {known}")
-        width = 4 if name == "orientation" else 3
-        shape = (len(self.bodies), width)
-        return self._values(f"{layout.BODIES}/{name}", shape, frames)
-
-    def of_rotors(self, frames=slice(None)) -> np.ndarray:
-        """Return position and orientation (T, K, 7) of the rotors of hooks; K is 0 without."""
-        if "rotors" not in self._file.names("particles"):
-            return np.zeros((self.frames, 0, 7))[frames]
-        return self._values(f"{layout.ROTORS}/place", None, frames)
-
-    def body(self, name: str) -> dict[str, np.ndarray]:
-        """Return what never changes of a body: points, normals, resistance, ... by name."""
-        where = f"bodies/{name}"
-        names = self._file.names(where)
-        return {key: self._file.array(f"{where}/{key}", "f", None) for key in names}
-
-    def surface(self, body: str) -> np.ndarray | None:
-        """Return the points (n, 3) of a body as its file had them, None where there was none."""
-        return self.body(body).get("points_read") if body in self.bodies else None
+    def values(self, series: layout.Series, frames=slice(None)) -> np.ndarray:
+        """Return a series by its record, wherever in the file it is."""
+        return self._values(series.where, series.shape, frames)
 
     def arrays(self, rod: str) -> dict[str, np.ndarray]:
         """Return what a rod's strain twist was made from beside the case's text, by name."""
@@ -184,6 +157,17 @@ class Trajectory:
         group = OBSERVABLES if name in self.observables else TRAJECTORY
         where = TRACERS if name == "tracers" else f"{group}/{name}"
         return self._file.attribute(f"{where}/value", "units", str)
+
+    def labels(self, name: str) -> list[str]:
+        """Return whose each row of an observable is: rods, bodies, ends such as ``tail.start``.
+
+        Empty where it has no rows, such as a vector of the whole scene.
+        """
+        if name in layout.PER_ROD:
+            return [rod.name for rod in self.rods]
+        where = f"{OBSERVABLES}/{name}/value"
+        rows = self._file.attributes(where).get("rows", "") if name in self.observables else ""
+        return rows.split(", ") if rows else []
 
     def checkpoint(self, frames: int | None = None) -> dict | None:
         """Return the newest whole state of the run, or None if there is none.

@@ -63,12 +63,11 @@ def _copy_frames(writer, plan, run, compute):
         for series in plan.stored():
             if series in missing:
                 continue
-            read = run.read if series.name in run.fields else run.observable
             row_bytes = 8 * max(1, int(np.prod(series.shape)))
             rows = max(1, BLOCK // row_bytes)
             for first in range(0, run.frames, rows):
                 block = slice(first, min(first + rows, run.frames))
-                file[f"{series.where}/value"][block] = read(series.name, block)
+                file[f"{series.where}/value"][block] = run.values(series, block)
         for index in range(run.frames if missing else 0):
             fields = compute(index)
             for series in missing:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
-from rodsim.output.layout import FIELDS
+from rodsim.output.layout import FIELDS, OF_BODIES
 from rodsim.output.reader import Trajectory
 
 BLOCK = 2**24  # bytes read at a time
@@ -45,16 +47,19 @@ def _series(run):
     sizes = dict.fromkeys(FIELDS, 24 * run.points) | {"director": 72 * run.points}
     for name in run.fields:
         size = sizes.get(name) or 8 * run.read(name, slice(0, 1)).size
-        yield name, run.read, size
+        yield name, partial(run.read, name), size
     for name in run.observables:
-        yield name, run.observable, 24 * len(run.rods)
+        yield name, partial(run.observable, name), 24 * len(run.rods)
+    for name in OF_BODIES if run.bodies else ():
+        yield f"{name} of bodies", partial(run.of_bodies, name), 32 * len(run.bodies)
+    yield "rotors", run.of_rotors, 56
 
 
 def _bad_frames(run, name, read, size):
     """Yield (frame, what) of the first frame of a series that cannot be right."""
     rows = max(1, BLOCK // max(1, size))
     for first in range(0, run.frames, rows):
-        values = read(name, slice(first, min(first + rows, run.frames)))
+        values = read(slice(first, min(first + rows, run.frames)))
         good = np.isfinite(values).reshape(len(values), -1).all(axis=1)
         if name == "director":
             with np.errstate(all="ignore"):

@@ -1,9 +1,10 @@
 """The group ``/VTKHDF``: a view that lets ParaView open the output file itself, without a copy.
 
 Format: VTKHDF 2.0, PolyData with steps. Points and point data are virtual datasets over the
-trajectory; the lines, one per rod, are shared by all steps. ``NSteps`` says how many frames there
-are. VTK's reader copies all of ``Steps/Values`` into room for ``NSteps``: values beyond that crash
-it, values missing are read as time 0. So each frame raises ``NSteps`` first, then adds its time.
+trajectory; the lines, one per rod, and the triangles of bodies are shared by all steps. ``NSteps``
+says how many frames there are. VTK's reader copies all of ``Steps/Values`` into room for
+``NSteps``: values beyond that crash it, values missing are read as time 0. So each frame raises
+``NSteps`` first, then adds its time.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from __future__ import annotations
 import h5py
 import numpy as np
 
-from rodsim.output.layout import TRAJECTORY, Plan
+from rodsim.output.layout import SURFACES, TRAJECTORY, Plan
 from rodsim.output.rows import Counter
 
 VERSION = (2, 0)
@@ -23,19 +24,26 @@ def build_view(file: h5py.File, plan: Plan) -> None:
     root = file.create_group("VTKHDF")
     root.attrs["Version"] = np.array(VERSION, dtype=np.int64)
     root.attrs["Type"] = np.bytes_("PolyData")
-    root["NumberOfPoints"] = np.array([plan.points], dtype=np.int64)
-    add_cells(root, {"Lines": rod_lines(plan.rods)})
-    root["CellData/rod"] = np.arange(len(plan.rods), dtype=np.int64)
+    faces = plan.triangles
+    surfaces = [file[f"{SURFACES}/value"]] if faces else []
+    points = plan.points + sum(value.shape[1] for value in surfaces)
+    root["NumberOfPoints"] = np.array([points], dtype=np.int64)
+    add_cells(root, {"Lines": rod_lines(plan.rods), "Polygons": faces})
+    rods = np.append(np.arange(len(plan.rods)), np.full(len(faces), -1))
+    root["CellData/rod"] = rods.astype(np.int64)
     data = root.create_group("PointData")
     for series in plan.fields_stored():
+        value = file.get(f"{series.where}/value")
         if series.name == "position":
-            _add_view(root, "Points", file[f"{series.where}/value"], np.s_[:])
+            _add_view(
+                root, "Points", points, [(value, np.s_[:]), *((s, np.s_[:]) for s in surfaces)]
+            )
         elif series.name == "director":
             for i in range(3):
-                _add_view(data, f"D{i + 1}", file[f"{series.where}/value"], np.s_[:, :, i, :])
+                _add_view(data, f"D{i + 1}", points, [(value, np.s_[:, :, i, :])])
         elif series.where.startswith(TRAJECTORY):
-            _add_view(data, series.name, file[f"{series.where}/value"], np.s_[:])
-    add_steps(root.create_group("Steps"), len(plan.times), plan.points, data, ["rod"])
+            _add_view(data, series.name, points, [(value, np.s_[:])])
+    add_steps(root.create_group("Steps"), len(plan.times), points, data, ["rod"])
 
 
 class View:
@@ -68,11 +76,22 @@ class View:
         self._file.flush()
 
 
-def _add_view(group, name, value, pick):
-    frames, points = value.shape[:2]
+def _add_view(group, name, points, sources):
+    """Show datasets (T, n, ...), and what is picked of them, one after another in each frame.
+
+    ``points``: of a frame; where no source has them, there is NaN.
+    """
+    frames, first = sources[0][0].shape[0], 0
     view = h5py.VirtualLayout((frames * points, 3), np.float64)
-    source = h5py.VirtualSource(".", value.name, value.shape)  # "." is this very file
-    view[:] = source[pick]
+    for value, pick in sources:
+        source = h5py.VirtualSource(".", value.name, value.shape)  # "." is this very file
+        count = value.shape[1]
+        if count == points:
+            view[:] = source[pick]
+        else:  # of every frame the same block of rows
+            rows = h5py.MultiBlockSlice(start=first, stride=points, count=frames, block=count)
+            view[rows, :] = source[pick]
+        first += count
     group.create_virtual_dataset(name, view, fillvalue=np.nan)
 
 

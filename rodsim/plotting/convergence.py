@@ -6,17 +6,30 @@ from rodsim.convergence.report import fitted_order
 from rodsim.plotting import style
 
 MARKS = {"rkc": ("o", "#0b4f8a"), "euler": ("s", "#d1660f"), "rk4": ("^", "#3a7d2c")}
-SPACE = {"points": ("D", "#8a3b7a"), "epsilon": ("v", "0.45"), "accuracy": ("p", "#a08000")}
+SPACE = {
+    "points": ("D", "#8a3b7a"),
+    "body_points": ("P", "#2a7a7a"),
+    "epsilon": ("v", "0.45"),
+    "accuracy": ("p", "#a08000"),
+}
 SIZES = {
     "time": "mean step / run",
     "points": "spacing / length",
+    "body_points": "(points of bodies)^(-1/2)",
     "epsilon": "epsilon / the case's own",
     "accuracy": "accuracy of the sums",
 }
-DASHES = {"time": "-", "points": "--", "epsilon": ":", "accuracy": "-."}
+DASHES = {
+    "time": "-",
+    "points": "--",
+    "body_points": (0, (5, 1, 1, 1, 1, 1)),
+    "epsilon": ":",
+    "accuracy": "-.",
+}
 TITLES = {
     "time": "tolerance or step",
     "points": "points at fixed epsilon",
+    "body_points": "points of bodies",
     "epsilon": "epsilon (sensitivity)",
     "accuracy": "accuracy of the sums",
 }
@@ -84,12 +97,14 @@ def _relative_size(study, section, result):
         return result.row.value
     if section.axis == "points":
         return 1.0 / result.outcome.scene.rods.segments.sum()
+    if section.axis == "body_points":
+        return result.row.value**-0.5
     return 1.0 / result.outcome.steps
 
 
 def _what(section):
     names = {"time": "mean step", "points": "spacing", "epsilon": "epsilon", "accuracy": "accuracy"}
-    return names[section.axis]
+    return names.get(section.axis, "spacing of bodies")
 
 
 def _finish(axis):

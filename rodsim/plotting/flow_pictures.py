@@ -10,6 +10,7 @@ import numpy as np
 from rodsim.analysis.grid import AXES
 from rodsim.analysis.wall import piece_of_wall
 from rodsim.plotting import style
+from rodsim.plotting.bodies import draw_bodies
 from rodsim.plotting.camera import make_camera
 from rodsim.plotting.flow import (
     BOX_ARROWS,
@@ -51,6 +52,8 @@ def plot_flow(flow, scene, out, colour="speed", arrows=False) -> None:
 def plot_paths(time, paths, scene, out) -> None:
     """Draw the paths of tracers to a file, with the rods at the end."""
     points = np.concatenate([paths[np.isfinite(paths).all(axis=2)], scene.position])
+    if scene.bodies is not None:
+        points = np.concatenate([points, scene.bodies[0]])
     camera = make_camera("auto", points, upright=scene.wall is not None)
     wall = piece_of_wall(points, scene.wall)
     seen = camera.project(with_wall(points, camera, wall))[:, :2]
@@ -104,14 +107,20 @@ def _stage(camera, bounds, scene):
 
 
 def _draw_rods(axis, camera, scene):
-    """Draw the rods as tubes in a tilted view; in a plane as lines with a light edge."""
+    """Draw the rods as tubes in a tilted view; in a plane as lines with a light edge.
+
+    Bodies in their places, in a plane behind the rods.
+    """
     colours = [ROD] * len(scene.rods)
     if not camera.flat:
         draw_rods(
-            axis, camera, scene.rods, scene.position, scene.director, scene.thickness, colours
-        )
+            axis, camera, scene.rods, scene.position, scene.director, scene.thickness, colours,
+            bodies=scene.bodies,
+        )  # fmt: skip
         axis.collections[-1].set_zorder(4)
         return
+    if scene.bodies is not None:
+        draw_bodies(axis, camera, *scene.bodies, zorder=3)
     for colour, width in (((1.0, 1.0, 1.0, 1.0), 4.5), (ROD, 2.6)):
         draw_rods(axis, camera, scene.rods, scene.position, None, 0.0, [colour] * len(colours),
                   "line")  # fmt: skip
@@ -213,8 +222,9 @@ def _box(flow, scene):
 
 
 def scene_to_draw(run, frame, title, thickness):
-    """Return what the pictures here need to know of a run's rods in one frame."""
+    """Return what the pictures here need to know of a run's rods and bodies in one frame."""
     return SimpleNamespace(
+        bodies=(run.surfaces(frame), run.triangles) if run.bodies else None,
         position=run.read("position", frame),
         director=run.read("director", frame),
         rods=run.rods,

@@ -38,6 +38,13 @@ def thickness(run) -> float:
     return THICKNESS * max(rod.spacing * rod.count for rod in run.rods)
 
 
+def surfaces_of(run, frames):
+    """Return the surfaces of bodies (F, S, 3) in some frames and their triangles, or None, None."""
+    if not run.bodies:
+        return None, None
+    return np.array([run.surfaces(frame) for frame in frames]), run.triangles
+
+
 def plot_shapes(path, out, *, frames, at, view, kind, colour, overlay, directors=False):
     """Draw the shapes of a run: ``frames`` of them, or those nearest to the times ``at``."""
     with open_trajectory(path) as run:
@@ -127,7 +134,9 @@ def _frames(run, wanted, at):
 def _look(run, chosen, view, kind, colour, directors):
     """Return the camera, the shapes and the key of the colours for some frames."""
     position = np.array([run.read("position", frame) for frame in chosen])
-    camera = make_camera(view, position, upright=run.wall is not None)
+    surfaces, triangles = surfaces_of(run, chosen)
+    seen = position if surfaces is None else np.concatenate([position, surfaces], axis=1)
+    camera = make_camera(view, seen, upright=run.wall is not None)
     line = camera.flat or directors or "director" not in run.fields
     kind = kind or ("line" if line else "tube")
     if kind not in KINDS:
@@ -142,6 +151,7 @@ def _look(run, chosen, view, kind, colour, directors):
     shapes = Shapes(
         run.time[chosen], position, director, run.rods, colours, tracers, run.units,
         thickness(run), kind, run.wall, directors * ARROW / THICKNESS * thickness(run),
+        surfaces, triangles,
     )  # fmt: skip
     return camera, shapes, key
 

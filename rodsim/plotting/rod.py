@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rodsim.plotting import style, surface
+from rodsim.plotting.bodies import body_faces, draw_bodies
 
 KINDS = ("tube", "ribbon", "line")
 BACK = (0.35, 0.35, 0.38, 1.0)
@@ -12,7 +13,7 @@ DARK, LIGHT = (0.1, 0.1, 0.12, 1.0), (0.95, 0.95, 0.95, 1.0)
 LUMA = np.array([0.299, 0.587, 0.114])  # how bright red, green and blue look in grey
 
 
-def draw_rods(axis, camera, rods, position, director, size, colours, kind="tube"):
+def draw_rods(axis, camera, rods, position, director, size, colours, kind="tube", bodies=None):
     """Draw rods on a matplotlib axis and return the axis.
 
     Parameters
@@ -24,8 +25,14 @@ def draw_rods(axis, camera, rods, position, director, size, colours, kind="tube"
     colours : for each rod one rgba (4,), or one for each of its segments (S, 4).
     kind : ``tube``: with a stripe along D^1; ``ribbon``: from -D^1 to D^1, its back side grey;
         ``line``: the centreline.
+    bodies : points (S, 3) of surfaces and triangles (F, 3) between them, or None; behind lines,
+        and among tubes and ribbons where they are.
     """
     pieces = []
+    if bodies is not None and kind == "line":
+        draw_bodies(axis, camera, *bodies)
+    elif bodies is not None:
+        pieces.append(body_faces(camera, *bodies))
     for rod, colour in zip(rods, colours, strict=True):
         nodes = slice(rod.first, rod.first + rod.count)
         if kind == "line":

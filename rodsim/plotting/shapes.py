@@ -25,6 +25,7 @@ class Shapes:
     colours : rgba for each frame and rod, (4,) or (S, 4). tracers : (T, P, 3), P may be 0.
     units : names of the units of ``length`` and ``time``. size : diameter or width of the rods.
     wall : height of a wall, or None. arrows : length of D^1 and D^2 drawn as arrows, 0 for none.
+    surfaces : of bodies, (T, S, 3), and triangles (F, 3) between their points; or None.
     """
 
     time: np.ndarray
@@ -38,6 +39,8 @@ class Shapes:
     kind: str
     wall: float | None = None
     arrows: float = 0.0
+    surfaces: np.ndarray | None = None
+    triangles: np.ndarray | None = None
 
     def draw(self, axis, camera: Camera, frame: int):
         """Draw one frame on an axis that has its limits; return the axis."""
@@ -46,7 +49,8 @@ class Shapes:
             draw_tracers(axis, camera, self.tracers[frame])
         director = None if self.director is None else self.director[frame]
         shape = self.position[frame], director, self.size, self.colours[frame], self.kind
-        draw_rods(axis, camera, self.rods, *shape)
+        bodies = None if self.surfaces is None else (self.surfaces[frame], self.triangles)
+        draw_rods(axis, camera, self.rods, *shape, bodies)
         if self.arrows:
             draw_directors(axis, camera, self.rods, *shape[:2], self.arrows)
         return axis
@@ -62,7 +66,10 @@ class Shapes:
         return np.array([low - space, high + space])
 
     def _points(self):
-        return np.concatenate([self.position, self.tracers], axis=1).reshape(-1, 3)
+        shown = [self.position, self.tracers]
+        if self.surfaces is not None:
+            shown.append(self.surfaces)
+        return np.concatenate(shown, axis=1).reshape(-1, 3)
 
     def stamp(self, frame: int) -> str:
         """Return the time of a frame with its unit."""

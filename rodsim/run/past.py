@@ -115,8 +115,10 @@ class Past:
             run.inputs,
         )
         plan = plan_output(self.case, scene, self.snapshot)
-        stored = tuple(series for series in plan.extra if series[0] in run.observables)
-        plan = replace(plan, case=text, times=self._times(), extra=stored)
+        plan = replace(plan, case=text, times=self._times())
+        beyond = plan.extra_stored()  # a file of an older version may lack some of it
+        kept = (e for e, s in zip(plan.extra, beyond, strict=True) if run.stores(s.where))
+        plan = replace(plan, extra=tuple(kept))
         if plan.rods != run.rods:
             raise FileError(f"{self.path}: damaged: its rods are not those of its case")
         history = self._history()

@@ -10,7 +10,7 @@ from rodsim.output import CaseText, Plan
 from rodsim.output.writer import NotFinite
 from rodsim.run.ending import Motion, SumErrors
 from rodsim.scene.inputs import case_digests
-from rodsim.scene.series import extra_series
+from rodsim.scene.series import extra_series, row_labels
 
 SECONDS_BETWEEN_CHECKPOINTS = 60.0  # at most, if no frame comes
 SECONDS_BETWEEN_SYNCS = 10.0  # at least: waiting for the disk at every frame would cost too much
@@ -45,6 +45,7 @@ def plan_output(case, scene, checkpoint: dict) -> Plan:
         checkpoint=checkpoint,
         extra=extra_series(scene),
         arrays=scene.arrays,
+        labels=row_labels(scene),
         bodies={body.name: body.stored() for body in scene.bodies},
     )
 

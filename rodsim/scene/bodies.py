@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from rodsim.blocks.ends import end_node, held_ends, winds_up
+from rodsim.blocks.hull import triangles
 from rodsim.blocks.mobility import resistance_of
 from rodsim.blocks.surface import SurfacePoints, surface_from, surface_of
 from rodsim.errors import FileError
@@ -40,7 +41,10 @@ class Body:
     read: np.ndarray | None = None
 
     def stored(self) -> dict:
-        """Return what never changes of it, for the output; points and normals (n, 3)."""
+        """Return what never changes of it, for the output; points and normals (n, 3).
+
+        skin (n, 3) : points of the surface itself; triangles (F, 3) : between them.
+        """
         surface, kept = self.surface, {}
         if surface.normals is not None:
             kept["normals"] = surface.normals.T.copy()
@@ -48,6 +52,8 @@ class Body:
             kept["points_read"] = self.read
         return {
             "points": surface.points.T.copy(),
+            "skin": surface.skin.T.copy(),
+            "triangles": triangles(surface),
             "epsilon": surface.epsilon,
             "inset": surface.inset,
             "resistance": self.resistance,
@@ -146,6 +152,8 @@ def nodes_series(scene) -> list:
         for name, dimension in layout.OF_BODIES.items()
         if bodies
     ]
+    if skin := sum(body.surface.skin.shape[1] for body in scene.bodies):
+        series.append(("surfaces", (skin, 3), layout.LENGTH, layout.SURFACES))
     if rotors:
         series.append(("rotor_place", (rotors, 7), (0, 0, 0), f"{layout.ROTORS}/place"))
     return series
@@ -162,7 +170,11 @@ def observe_nodes(scene, state, rates) -> dict:
             "body_orientation": np.array(turns[: middle - begin]),
             "body_velocity": rates[:3, begin:middle].T,
             "body_angular_velocity": rates[3:, begin:middle].T,
-        }
+            "surfaces": np.vstack([
+                state.position[:, body.node] + body.surface.skin.T @ state.director[:, :, body.node]
+                for body in scene.bodies
+            ]),
+        }  # fmt: skip
     if scene.nodes > middle:
         places = state.position[:, middle:].T
         found["rotor_place"] = np.hstack([places, np.array(turns[middle - begin :])])

@@ -12,6 +12,7 @@ from rodsim.nodes import lay_out
 from rodsim.registry import kinds
 from rodsim.scene.at_wall import below_wall, near_wall
 from rodsim.scene.bodies import add_nodes, build_bodies, check_bodies
+from rodsim.scene.hooks import stiff_hooks
 from rodsim.scene.moduli import along_rods, typical
 from rodsim.scene.neighbours import coincident
 from rodsim.scene.rods import build_rods
@@ -69,7 +70,8 @@ def build_scene(case, stored=None) -> Scene:
     )
     if problems := [*below_wall(case, scene), *(() if stored else check_bodies(case, scene))]:
         raise CaseError(problems)
-    scene = replace(scene, warnings=(*scene.warnings, *near_wall(case, scene)))
+    seen = (*near_wall(case, scene), *stiff_hooks(case, scene))
+    scene = replace(scene, warnings=(*scene.warnings, *seen))
     if stored is None:
         _refuse_coincident(case, scene)
     scene = with_parts(scene, [part for kind in kinds() for part in kind.build(case, scene)])

@@ -1,8 +1,10 @@
 """Parts evaluated at single states: for frames, and for the fluid around a stored run."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from rodsim.compiled.parts import FLOW, FORCE, TRACERS, Part, PartList
+from rodsim.compiled.parts import FLOW, FORCE, HOLD, RELEASE, TRACERS, Part, PartList
 from rodsim.scene.calls import Calls
 from rodsim.scene.loop import evaluate
 from rodsim.scene.state import Scene, State
@@ -34,6 +36,33 @@ def _acts_on_rods(part):
     return part.external and part.side in (FORCE, FLOW)
 
 
+@dataclass(frozen=True)
+class Exerted:
+    """What a state exerts on the fluid: loads (6, N) of its nodes, and what constraints have left.
+
+    left : of each part that holds, its numbers, with what is beside the nodes (surfaces of bodies).
+    """
+
+    loads: np.ndarray
+    left: tuple = ()
+
+    def of(self, part: Part, scene: Scene) -> np.ndarray | None:
+        """Return the numbers that a part shares with one that holds, None where it does not."""
+        pairs = zip(scene.parts.of(HOLD), self.left, strict=True)
+        return next((left for own, left in pairs if own.fixed is part.fixed), None)
+
+
+def exerted_by(scene: Scene, state: State) -> Exerted:
+    """Return what a state exerts on the fluid, after all constraints."""
+    if not scene.parts.constrained:
+        return Exerted(loads_of(scene, state))
+    evaluation = Evaluation(scene, scene.parts.of(FORCE, RELEASE, FLOW, HOLD))
+    loads, none = np.zeros((6, scene.nodes)), np.zeros((3, state.tracer.shape[1]))
+    evaluation.add(state, loads, np.zeros_like(loads), none)
+    left = (evaluation.left_by(part).copy() for part in scene.parts.of(HOLD))
+    return Exerted(loads, tuple(left))
+
+
 def loads_of(scene: Scene, state: State) -> np.ndarray:
     """Return the forces and torques (6, N) of all nodes, before any constraint, on the fluid."""
     loads, none = np.zeros((6, scene.nodes)), np.zeros((3, state.tracer.shape[1]))
@@ -41,8 +70,15 @@ def loads_of(scene: Scene, state: State) -> np.ndarray:
     return loads
 
 
-def fluid_velocity(scene: Scene, state: State, loads: np.ndarray) -> np.ndarray:
-    """Return the velocity (3, P) of the fluid at the tracers of a state, driven by given loads."""
-    velocity = np.zeros((3, state.tracer.shape[1]))
-    Evaluation(scene, scene.parts.of(TRACERS)).add(state, loads, np.zeros_like(loads), velocity)
+def fluid_velocity(scene: Scene, state: State, exerted: Exerted) -> np.ndarray:
+    """Return the velocity (3, P) of the fluid at the tracers of a state, driven by what it is told.
+
+    The state needs no triads.
+    """
+    velocity, loads = np.zeros((3, state.tracer.shape[1])), exerted.loads
+    evaluation = Evaluation(scene, parts := scene.parts.of(TRACERS))
+    for part in parts:
+        if (left := exerted.of(part, scene)) is not None:
+            evaluation.left_by(part)[:] = left
+    evaluation.add(state, loads, np.zeros_like(loads), velocity)
     return velocity

@@ -7,6 +7,13 @@ from rodsim.scene.neighbours import any_pair_counts
 from rodsim.scene.state import Scene
 
 
+def row_labels(scene: Scene) -> dict[str, tuple[str, ...]]:
+    """Return whose the rows of observables and of bodies' series are, by name of the series."""
+    found = {name: labels for part in scene.parts for name, labels in part.labels.items()}
+    names = tuple(body.name for body in scene.bodies)
+    return found | {f"body_{name}": names for name in layout.OF_BODIES if names}
+
+
 def extra_series(scene: Scene) -> tuple:
     """Return the observables that not every scene has: (name, shape, dimension) of each."""
     series = [entry for part in scene.parts for entry in part.series]

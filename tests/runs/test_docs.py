@@ -18,6 +18,7 @@ SLOW = (
     "data",
     "measure",
     "wall",
+    "bodies",
     "rest",
 )  # minutes where the machine is not quiet; and below, the tutorial
 BLOCK = re.compile(r"(?:<!-- (?P<mark>[\w: ]+) -->\n)?```(?P<kind>\w+)\n(?P<text>.*?)```", re.S)
