@@ -175,7 +175,9 @@ def test_interrupted_it_keeps_what_it_has(here, monkeypatch):
 def test_unknown_axis_is_refused(here):
     done = call("converge", CONFIGS / "open_rod.yaml", "--in", "step,mesh")
     assert done.exit_code == 2
-    assert "'mesh' is none of tolerance, step, points, body_points, epsilon, accuracy" in done.stderr
+    assert (
+        "'mesh' is none of tolerance, step, points, body_points, epsilon, accuracy" in done.stderr
+    )
 
 
 @pytest.mark.compiled
