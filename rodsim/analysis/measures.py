@@ -13,6 +13,14 @@ import numpy as np
 
 from rodsim.analysis.curve import amplitude, end_to_end, length, radius_of_gyration
 from rodsim.analysis.helix import pitch, radius, turns
+from rodsim.analysis.swimmers import (
+    froude,
+    froude_of_run,
+    place,
+    place_and_work,
+    swimming_speed,
+    swimming_speed_of_run,
+)
 from rodsim.analysis.swimming import efficiency, mean_rate, rate
 from rodsim.analysis.topology import link, twist, writhe
 from rodsim.forces.elastic import ENERGIES
@@ -153,6 +161,30 @@ ALL = (
               layout.ENERGY) for name in ENERGIES),
     _stored("kinetic_energy", "1/2 rho pi eps^2 sum |u|^2 ds; of cases with a density", "rod",
             layout.ENERGY, number=mean, whole="mean over time"),
+    Measure(
+        "body_speed", "of its centre, |d/dt X|", "body", VELOCITY, lambda body: body.position,
+        lambda time, values, *_: np.linalg.norm(rate(time, values), axis=1),
+        _speed_of_run, "slope of a straight line",
+    ),
+    Measure(
+        "swimming_speed", "along the axis of its path, the mean of its own z axis", "body",
+        VELOCITY, place, swimming_speed, swimming_speed_of_run,
+        "slope of a straight line",
+    ),
+    Measure(
+        "body_spin", "its angular velocity", "body", (0, 0, -1), lambda body: body.spin,
+        number=mean, whole="mean over time", components=tuple("xyz"),
+    ),
+    Measure(
+        "propulsion", "Froude: drag of the body * swimming speed^2/power of all motors", "body",
+        NONE, place_and_work, froude, froude_of_run,
+        "of the means of speed and power", needs=("motor_work",),
+    ),
+    *(_stored(f"motor_{name}", about, "motor", unit, number=mean, whole="mean over time")
+      for name, about, unit in (
+          ("rate", "of the end relative to its holder", (0, 0, -1)),
+          ("torque", "on the end, about the axis", layout.ENERGY),
+      )),
     _stored("gap", "smallest distance of points that are no neighbours", "scene", LENGTH,
             number=lambda time, values, *_: values.min(), whole="smallest"),
     *(_stored(name, f"{name.partition('_')[2]} of all rods on the fluid", "scene", unit,

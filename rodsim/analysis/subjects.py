@@ -1,4 +1,4 @@
-"""What a quantity is measured of: a rod, or the whole scene; and how it is seen at a frame."""
+"""What a quantity is measured of: a rod, a body, a motor, the whole scene; and how it is seen."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from rodsim.analysis.strain import strain_twist
+from rodsim.analysis.swimmers import BodyFrame, MotorFrame, motors_of, motors_of_case
 from rodsim.errors import UsageError
 from rodsim.nodes import Rod
 from rodsim.output.layout import PER_ROD
@@ -91,4 +92,8 @@ class Kind:
 KINDS = {
     "scene": Kind(lambda run: {"": None}, lambda case: [""], lambda frame, _: frame),
     "rod": Kind(lambda run: {rod.name: rod for rod in run.rods}, lambda c: [*c["rods"]], RodFrame),
+    "body": Kind(
+        lambda run: {name: name for name in run.bodies}, lambda c: [*c.get("bodies", ())], BodyFrame
+    ),
+    "motor": Kind(lambda run: {name: name for name in motors_of(run)}, motors_of_case, MotorFrame),
 }

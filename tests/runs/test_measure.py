@@ -9,6 +9,7 @@ from click.testing import CliRunner
 from scenes import CONFIGS
 
 from rodsim import load_case, open_trajectory, resume, simulate
+from rodsim.analysis import measuring
 from rodsim.analysis.curve import length
 from rodsim.analysis.swimming import swimming_velocity, towing_drag
 from rodsim.cli import main
@@ -333,3 +334,43 @@ def test_what_is_driven_is_never_still(tmp_path):
     assert not (tmp_path / "x").exists()
     with pytest.raises(UsageError, match="until 'stil'"):
         simulate(load_case(CONFIGS / "open_rod.yaml"), tmp_path / "x", until="stil")
+
+
+SWIMMER = {
+    "fluid": {"viscosity": 0.7, "epsilon": 0.5},
+    "bodies": {
+        "cell": {"shape": {"kind": "sphere", "radius": 1.5, "points": 20, "origin": [0.2, 0, -1.5]}}
+    },
+    "rods": {
+        "tail": {
+            "shape": {"kind": "straight", "points": 7, "length": 3.0, "origin": [0.2, 0, 0]},
+            "moduli": {"bending": 1.3, "twisting": 1.2, "shear": 120.0, "stretch": 130.0},
+            "strain_twist": [0.5, 0.2, 0.3],
+            "start": {"hold": "clamped", "to": "cell", "motor": {"rate": 0.7}},
+        }
+    },
+    "time": {"end": 0.9, "tolerance": 1e-4},
+    "output": {"interval": 0.1},
+}
+
+
+def test_bodies_and_motors_are_measured(tmp_path):
+    """By the places in the file: slope along the mean axis, drag U^2/P, of the frames after 0.3."""
+    simulate(load_case(SWIMMER), tmp_path / "swimmer.h5")
+    names = ("body_speed", "swimming_speed", "propulsion", "motor_torque", "motor_rate")
+    with open_trajectory(tmp_path / "swimmer.h5") as run:
+        picked = measuring.pick(run, names)
+        found = measuring.of_run(run, picked, 0.3)
+        t, x = run.time[3:], run.of_bodies("position")[3:, 0]
+        w, q1, q2, q3 = run.of_bodies("orientation")[3:, 0].T
+        z = np.array([2 * (q1 * q3 + w * q2), 2 * (q2 * q3 - w * q1), 1 - 2 * (q1**2 + q2**2)])
+        axis = z.mean(axis=1) / np.linalg.norm(z.mean(axis=1))
+        slope = np.polyfit(t, x, 1)[0]
+        assert found["cell.body_speed"] == pytest.approx(np.linalg.norm(slope), rel=1e-12)
+        assert found["cell.swimming_speed"] == pytest.approx(slope @ axis, rel=1e-12)
+        work = run.observable("motor_work")
+        power = (work[-1] - work[3]) / (t[-1] - t[0])
+        drag = run.body("cell")["resistance"][2, 2]
+        assert found["cell.propulsion"] == pytest.approx(drag * (slope @ axis) ** 2 / power)
+        assert found["tail.start.motor_rate"] == pytest.approx(0.7, rel=1e-9)
+        assert found["tail.start.motor_torque"] * 0.7 == pytest.approx(power, rel=5e-2)
