@@ -7,6 +7,7 @@ from scenes import end_of, system_from
 
 from rodsim.analysis.replay import Sources
 from rodsim.compiled.row import TRAVEL_TIMES
+from rodsim.scene.evaluation import Exerted
 from rodsim.scene.shapes import rotation_matrix
 
 
@@ -184,7 +185,9 @@ def test_the_fluid_far_from_a_rod_is_the_background():
     _, system = system_from(changed(ROD, {"fluid.flow": flow}))
     state, points = system.scene.initial, np.random.default_rng(3).normal(size=(40, 3))
     loads = np.random.default_rng(4).normal(size=(6, 12))
-    with_flow, without = (Sources(0.0, state.position, loads, s.scene) for s in (system, plain))
+    with_flow, without = (
+        Sources(0.0, state.position, Exerted(loads), s.scene) for s in (system, plain)
+    )
     z = points[:, 2]
     background = np.array([4 * 1.3 * z * (3.7 - z) / 3.7**2, 0 * z + 0.4, 0 * z]).T
     assert with_flow.velocity(points) - without.velocity(points) == pytest.approx(background)
@@ -204,7 +207,7 @@ def test_pressure_of_a_flow_whose_laplacian_is_the_same_everywhere(flow, slope):
     _, system = system_from(changed(ROD, {"fluid.flow": flow}))
     (part,) = (p for p in system.scene.parts if p.name == "flow" and p.side == "tracers")
     points = np.random.default_rng(3).normal(size=(3, 20))
-    found = part.pressure(points, None, None, 0.6)
+    found = part.pressure(points, None, None, 0.6, None)
     assert found == pytest.approx(slope @ points, rel=1e-12, abs=1e-14)
 
 
