@@ -89,6 +89,7 @@ def test_nothing_moves_on_a_wall_under_a_sphere():
     assert np.isfinite(sources.pressure(CENTRE + 1.5 * A * directions(9))).all()
 
 
+@pytest.mark.compiled
 def test_between_frames_surfaces_move_along(tmp_path):
     """Of a sphere that does not turn, half-way in space is half-way in time."""
     data = scene_data()

@@ -104,6 +104,7 @@ def test_flow_on_a_grid_is_incompressible_and_balances_the_pressure(two_rods):
     assert abs(g).max() > 0
 
 
+@pytest.mark.compiled
 def test_settling_keeps_the_motion_and_removes_noise(tmp_path):
     """Noise of 1e-6 of the length changes the raw flow much, the settled one a tenth of that."""
     simulate(
@@ -138,6 +139,7 @@ def test_settling_keeps_the_motion_and_removes_noise(tmp_path):
     assert abs(smooth - settled).max() < 0.2 * noise
 
 
+@pytest.mark.compiled
 def test_tracers_afterwards_follow_those_the_run_carried(tmp_path):
     case = load(
         "open_rod",

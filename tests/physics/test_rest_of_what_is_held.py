@@ -29,6 +29,7 @@ def column(load, hold="clamped", points=31, length=6.0):
     return build_scene(case_from_mapping(case))
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(("load", "growing"), [(0.98 * pi**2 / 4, 0), (1.02 * pi**2 / 4, 2)])
 def test_euler_buckling_of_a_clamped_column(load, growing):
     """pi^2/4 = 2.4674; shear and stretch lower it by F/b = 0.2 % here, the lattice by 0.1 %.

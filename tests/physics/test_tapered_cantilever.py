@@ -1,6 +1,7 @@
 """A tapered cantilever with a load at its tip, against a quadrature of its bending and shear."""
 
 import numpy as np
+import pytest
 from scenes import last
 
 from rodsim.case import case_from_mapping
@@ -32,6 +33,7 @@ def deflection(s):
     return FORCE * (weights @ ((s - x) * (LENGTH - x) / bending + 1.0 / shear))
 
 
+@pytest.mark.compiled
 def test_deflection_is_that_of_the_quadrature():
     """Within 0.3 %: slopes are (3/L) y = 1.5 %, so 1e-4 by the small angle, and the half weight
     of the last segment's curvature makes O(ds^2), 0.2 %. Without the taper it is 28 % less."""
