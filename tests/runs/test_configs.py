@@ -249,6 +249,7 @@ def mean_rate(trajectory, name, begin, end):
 
 
 @pytest.mark.compiled
+@pytest.mark.long
 def test_the_bacterium_swims_as_its_header_says(tmp_path):
     """Speed along its own axis, not along its helical path; its motor turns against its cell."""
     with run("bacterium", tmp_path) as trajectory:

@@ -19,6 +19,7 @@ SLOW = (
     "measure",
     "wall",
     "bodies",
+    "large",
     "rest",
 )  # minutes where the machine is not quiet; and below, the tutorial
 BLOCK = re.compile(r"(?:<!-- (?P<mark>[\w: ]+) -->\n)?```(?P<kind>\w+)\n(?P<text>.*?)```", re.S)
