@@ -26,6 +26,7 @@ from rodsim.case.words import did_you_mean
 from rodsim.compiled.parts import FORCE, HOLD, PLACE, RELEASE, TRACERS, Part, Statics
 from rodsim.compiled.row import Entry, Row
 from rodsim.errors import CaseError
+from rodsim.forces.places import rod_named
 from rodsim.registry import Kind
 
 HELD_IN = "space"
@@ -127,7 +128,7 @@ def _members(case, scene, rows, turns):
 
     found, rotor = [], scene.rods.points + len(scene.bodies)
     for name, which, end in held_ends(case):
-        rod = scene.rods[scene.rods.names.index(name)]
+        rod = rod_named(scene.rods, name)
         start = scene.arrays[name][f"held_{which}"]
         place, triad = start[:3], start[3:].reshape(3, 3)
         turn, centre = turns.get(end.to, (np.eye(3), place))

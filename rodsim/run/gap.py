@@ -11,7 +11,7 @@ import warnings
 
 from rodsim.run.ending import gap_sentence
 from rodsim.scene.at_wall import mirror_gap
-from rodsim.scene.bodies import deepest_point
+from rodsim.scene.clearance import deepest_point
 from rodsim.scene.gap import closest_pair
 from rodsim.scene.neighbours import any_pair_counts, diameter, excluded
 

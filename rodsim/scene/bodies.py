@@ -16,6 +16,7 @@ from rodsim.blocks.hull import triangles
 from rodsim.blocks.mobility import resistance_of
 from rodsim.blocks.surface import SurfacePoints, surface_from, surface_of
 from rodsim.errors import FileError
+from rodsim.forces.places import rod_named
 from rodsim.output import layout
 from rodsim.scene.data.points import read_points
 from rodsim.scene.quaternions import to_matrix, to_quaternion
@@ -117,7 +118,7 @@ def add_nodes(case, rods, bodies, position, director, arrays):
     position, director = position.copy(), director.copy()
     rotors = []
     for name, which, end in held_ends(case):
-        node = end_node(rods[rods.names.index(name)], which)
+        node = end_node(rod_named(rods, name), which)
         kept = arrays.setdefault(name, {})
         start = kept.setdefault(f"held_{which}", start_of(position, director, node))
         place, triad = start[:3], start[3:].reshape(3, 3)
@@ -189,115 +190,3 @@ def stored_nodes(run, frame: int):
         rows = np.vstack([np.hstack(list(bodies)), rows])
     triads = [to_matrix(row[3:]).T for row in rows]
     return rows[:, :3].T, np.array(triads).reshape(-1, 3, 3).transpose(1, 2, 0)
-
-
-def check_bodies(case, scene) -> list:
-    """Return problems of rods in bodies or attached from afar, and of bodies that overlap."""
-    problems = []
-    held = {(name, end_node(scene.rods[scene.rods.names.index(name)], which))
-            for name, which, _ in held_ends(case)}  # fmt: skip
-    for body in scene.bodies:
-        for rod in scene.rods:
-            points = _local(body, scene.initial.position[:, rod.nodes])
-            outside = distance(body.shape, body.surface, points)
-            for node in (n for r, n in held if r == rod.name):
-                outside[node - rod.first] = np.inf
-            k = int(np.argmin(outside))
-            if outside[k] < 0.0:
-                reason = (
-                    f"point {k} lies {-outside[k]:.3g} inside body '{body.name}': move or turn one"
-                )
-                problems.append(case.source.problem(("rods", rod.name, "shape"), reason))
-    problems += [*_apart(case, scene), *_below_wall(case, scene)]
-    for name, which, end in held_ends(case):
-        if end.to == "space" or end.gap:
-            continue
-        body = next(body for body in scene.bodies if body.name == end.to)
-        rod = scene.rods[scene.rods.names.index(name)]
-        place = scene.arrays[name][f"held_{which}"][:3, None]
-        far = abs(float(distance(body.shape, body.surface, _local(body, place))[0]))
-        if far > scene.epsilon * (1.0 + 1e-9):
-            reason = (
-                f"is {far:.4g} from the surface of '{end.to}', more than epsilon, "
-                f"{scene.epsilon:.4g}: move it there, or say gap: true"
-            )
-            problems.append(case.source.problem(("rods", rod.name, which, "to"), reason))
-    return problems
-
-
-def _apart(case, scene):
-    """Yield a problem for each pair of bodies of which one has a point of the other inside."""
-    for i, body in enumerate(scene.bodies):
-        for other in scene.bodies[:i]:
-            pairs = (body, other), (other, body)
-            depths = (
-                distance(a.shape, a.surface, _local(a, b.centre[:, None] + b.turn @ b.surface.skin))
-                for a, b in pairs
-            )
-            if min(float(d.min()) for d in depths) < 0.0:
-                reason = f"overlaps body '{other.name}': move one"
-                yield case.source.problem(("bodies", body.name, "shape"), reason)
-
-
-def _below_wall(case, scene):
-    """Yield a problem for each body that is not above the wall."""
-    for body in scene.bodies if scene.wall is not None else ():
-        lowest = float((body.centre[:, None] + body.turn @ body.surface.skin)[2].min())
-        if lowest <= scene.wall:
-            reason = f"is at z = {lowest:.6g}: must be above the wall, z = {scene.wall:g}"
-            yield case.source.problem(("bodies", body.name, "shape"), reason)
-
-
-def deepest_point(scene, state):
-    """Return how far a rod's point lies inside a body, which point and body; 0 where none does.
-
-    Held points do not count: they are where they were put.
-    """
-    deepest, held = (0.0, -1, None), _held_nodes(scene)
-    for body in scene.bodies:
-        turn, centre = state.director[:, :, body.node].T, state.position[:, body.node]
-        points = turn.T @ (state.position[:, : scene.rods.points] - centre[:, None])
-        inside = -distance(body.shape, body.surface, points)
-        inside[held] = 0.0
-        k = int(np.argmax(inside))
-        if inside[k] > deepest[0]:
-            deepest = float(inside[k]), k, body
-    return deepest
-
-
-def _held_nodes(scene):
-    return [
-        end_node(scene.rods[scene.rods.names.index(name)], key.removeprefix("held_"))
-        for name, kept in scene.arrays.items()
-        for key in kept
-        if key.startswith("held_")
-    ]
-
-
-def _local(body, points):
-    return body.turn.T @ (points - body.centre[:, None])
-
-
-def distance(shape, surface: SurfacePoints, points: np.ndarray) -> np.ndarray:
-    """Return how far points (3, n), in the frame of a body, are outside its surface; < 0 inside.
-
-    Exact for spheres and spherocylinders, to first order in the distance for spheroids. A surface
-    from a file counts as seen from its centre: as far as the surface point nearest in direction.
-    """
-    x, y, z = points
-    rho = np.hypot(x, y)
-    if shape.kind == "sphere":
-        return np.hypot(rho, z) - shape.radius
-    if shape.kind == "spherocylinder":
-        straight = 0.5 * shape.length - shape.radius
-        return np.hypot(rho, z - np.clip(z, -straight, straight)) - shape.radius
-    if shape.kind == "spheroid":
-        a, b = 0.5 * shape.length, shape.radius
-        level = (rho / b) ** 2 + (z / a) ** 2 - 1.0
-        slope = 2.0 * np.hypot(rho / b**2, z / a**2)
-        return np.where(slope > 0.0, level / np.where(slope > 0.0, slope, 1.0), -min(a, b))
-    skin = surface.skin
-    radius = np.linalg.norm(skin, axis=0)
-    far = np.linalg.norm(points, axis=0)
-    nearest = np.argmax((skin / radius).T @ points, axis=0)
-    return far - radius[nearest]

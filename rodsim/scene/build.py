@@ -11,7 +11,8 @@ from rodsim.errors import CaseError
 from rodsim.nodes import lay_out
 from rodsim.registry import kinds
 from rodsim.scene.at_wall import below_wall, near_wall
-from rodsim.scene.bodies import add_nodes, build_bodies, check_bodies
+from rodsim.scene.bodies import add_nodes, build_bodies
+from rodsim.scene.clearance import check_bodies
 from rodsim.scene.hooks import stiff_hooks
 from rodsim.scene.moduli import along_rods, typical
 from rodsim.scene.neighbours import coincident

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rodsim.blocks.ends import end_node, held_ends
+from rodsim.forces.places import rod_named
 
 
 def stiff_hooks(case, scene) -> list:
@@ -14,7 +15,7 @@ def stiff_hooks(case, scene) -> list:
     for name, which, end in held_ends(case):
         if end.hook is None:
             continue
-        rod = scene.rods[scene.rods.names.index(name)]
+        rod = rod_named(scene.rods, name)
         bending, twisting = _segment(scene, rod, end_node(rod, which), which)
         for key, limit in (("bending", bending), ("twisting", twisting)):
             value = getattr(end.hook, key)
