@@ -73,7 +73,10 @@ def _far(case, scene):
 
 
 def _apart(case, scene):
-    """Yield a problem for each pair of bodies of which one has a point of the other inside."""
+    """Yield a problem for each pair of bodies of which one has a point of the other inside.
+
+    An overlap shallower than the points are apart can go unseen.
+    """
     for i, body in enumerate(scene.bodies):
         for other in scene.bodies[:i]:
             pairs = (body, other), (other, body)
