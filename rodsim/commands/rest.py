@@ -43,6 +43,9 @@ def rest(source, output, overrides, origin, frame, time, saddle, overwrite, quie
     ever longer steps, and leaves states that are not stable. Writes two frames, the start and the
     rest. Exit code 3 where it does not come to rest.
     """
+    from rodsim.output.paths import check_place
+
+    check_place(output, overwrite)  # before the wait for the compiler, and for the state
     start = begin(source, overrides, origin, frame, time, quiet)
     from rodsim.errors import DivergedError
     from rodsim.rest.find import find

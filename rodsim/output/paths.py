@@ -9,12 +9,28 @@ from pathlib import Path
 
 from rodsim import kernel_locks
 from rodsim.errors import FileError
+from rodsim.files import has_hdf5_signature
 from rodsim.locks import Holder, NamedLock, holder
 
 
 def real_file(path: Path) -> Path:
     """Return the file that a path stands for: where it is a link, what that leads to."""
     return Path(os.path.realpath(path)) if os.path.islink(path) else Path(path)
+
+
+def check_place(path, overwrite=False) -> None:
+    """Raise FileError where no output can be written: no folder, no file, or a foreign one.
+
+    overwrite : what is there would be replaced, which only an output of a run may be.
+    """
+    path = Path(path)
+    if not (folder := real_file(path).parent).is_dir():
+        raise FileError(f"{path}: there is no folder {folder}")
+    if path.exists() and not path.is_file():
+        raise FileError(f"{path}: exists and is not a file")
+    named_so = path.suffix in (".h5", ".hdf5")
+    if overwrite and path.exists() and not named_so and not has_hdf5_signature(path):
+        raise FileError(f"{path}: is no output of a run, so --overwrite does not replace it")
 
 
 def free_name(path: Path) -> Path:

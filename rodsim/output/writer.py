@@ -10,12 +10,12 @@ import h5py
 import numpy as np
 
 from rodsim.errors import FileError
-from rodsim.files import has_hdf5_signature, reason_of
+from rodsim.files import reason_of
 from rodsim.output import build, layout
 from rodsim.output.build import abandoned, build_file, trim
 from rodsim.output.checkpoint import CheckpointWriter
 from rodsim.output.layout import CLOCK, Plan
-from rodsim.output.paths import OutputLock, real_file, take_place, temporary_name
+from rodsim.output.paths import OutputLock, check_place, take_place, temporary_name
 from rodsim.output.rows import Rows
 from rodsim.output.vtkhdf import View
 
@@ -62,13 +62,7 @@ class TrajectoryWriter:
             there before is then still there.
         """
         path = Path(path)
-        if not (folder := real_file(path).parent).is_dir():
-            raise FileError(f"{path}: there is no folder {folder}")
-        if path.exists() and not path.is_file():
-            raise FileError(f"{path}: exists and is not a file")
-        named_so = path.suffix in (".h5", ".hdf5")
-        if overwrite and path.exists() and not named_so and not has_hdf5_signature(path):
-            raise FileError(f"{path}: is no output of a run, so --overwrite does not replace it")
+        check_place(path, overwrite)
         lock = OutputLock(path)
         lock.acquire()
         return cls.create_locked(path, plan, lock, overwrite, fill)

@@ -11,6 +11,7 @@ from rodsim.case import Case
 from rodsim.case.plain import override_texts
 from rodsim.errors import FileError, UsageError
 from rodsim.output import TrajectoryWriter
+from rodsim.output.paths import check_place
 from rodsim.run.listener import Functions, Listener, Summary
 from rodsim.run.past import open_past
 from rodsim.scene.build import build_scene
@@ -60,6 +61,7 @@ def simulate(
     listener = listener or Functions(notify, stop, progress, case.title or str(output))
     started = perf_counter()
     _refuse_sources(case, output)
+    check_place(output, overwrite)  # before the wait for the compiler
     scene = build_scene(case)
     for problem in scene.warnings:
         listener.warn(str(problem))

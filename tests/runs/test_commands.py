@@ -291,6 +291,19 @@ def test_files_that_are_no_use_end_with_code_4_in_one_line(arguments, words, her
     assert len(result.stderr.splitlines()) == 1
 
 
+@pytest.mark.parametrize("command", ["run", "rest"])
+def test_an_output_that_cannot_be_is_refused_before_anything_is_compiled(
+    command, here, monkeypatch
+):
+    def compiled(*_):
+        raise AssertionError("compiled before the output was looked at")
+
+    monkeypatch.setattr("rodsim.run.warmup.ensure_compiled", compiled)
+    result = call(command, RING, "-o", "no/such/folder/out.h5")
+    assert result.exit_code == 4
+    assert result.stderr == "no/such/folder/out.h5: there is no folder no/such/folder\n"
+
+
 def test_a_missing_shape_file_is_an_error_4(here):
     (here / "case.yaml").write_text(
         "fluid: {viscosity: 2e-6, epsilon: 0.3}\n"
