@@ -54,8 +54,12 @@ def ensure_compiled(scene, say) -> float:
             if _is_ours(folder, kind) and not _undamaged(folder):
                 _clear(folder)
             command = [*this_rodsim("rodsim.run.warmup"), *kernels]
-            if subprocess.run(command, capture_output=True, check=False).returncode == 0:
+            done = subprocess.run(command, capture_output=True, check=False, text=True)
+            if done.returncode == 0:
                 note_compiled(folder, kind)
+            else:
+                why = done.stderr.strip().rpartition("\n")[2] or f"exit {done.returncode}"
+                say(f"that failed, so the run itself compiles, now and every time: {why}")
     return perf_counter() - start
 
 

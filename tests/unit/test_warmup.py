@@ -1,6 +1,8 @@
 """What counts as compiled: a list with checksums, against every way a cache can be broken."""
 
 import os
+import subprocess
+import sys
 
 import pytest
 from scenes import load
@@ -8,7 +10,9 @@ from scenes import load
 from rodsim.compiled import settings
 from rodsim.run import warmup
 from rodsim.run.warmup import LIST, is_compiled, note_compiled
+from rodsim.scene.build import build_scene
 
+CAPTURED = {"capture_output": True, "text": True, "check": False}
 RING, PLANE = "here-algebraic7-0-0", "here-algebraic7-1-0"
 
 
@@ -77,6 +81,46 @@ def test_links_that_wait_under_the_names_of_the_cache_are_not_followed(folder, t
     note_compiled(folder, PLANE)
     assert victim.read_text() == "precious"
     assert is_compiled(folder, PLANE)
+
+
+FIRST = """
+import importlib, os, pkgutil, sys
+import h5py, numba, numpy, pydantic
+import rodsim
+for room in "compiled", "forces", "flows", "blocks", "integrators", "run":
+    package = importlib.import_module(f"rodsim.{room}")
+    names = [each.name for each in pkgutil.iter_modules(package.__path__, f"rodsim.{room}.")]
+    for name in names:
+        child = os.fork()
+        if not child:
+            for loaded in [each for each in sys.modules if each.startswith("rodsim")]:
+                del sys.modules[loaded]
+            importlib.import_module(name)
+            os._exit(0)
+        assert os.waitpid(child, 0)[1] == 0, name
+    print(len(names))
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+def test_what_is_compiled_can_be_imported_before_anything_else():
+    """As in the process that compiles: a circle of imports there was seen by nobody."""
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
+    done = subprocess.run([sys.executable, "-c", FIRST], env=environment, **CAPTURED)
+    assert done.returncode == 0, done.stderr
+    assert all(int(number) >= 5 for number in done.stdout.split())
+
+
+def test_a_process_that_cannot_compile_says_why(tmp_path, monkeypatch):
+    said = []
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
+    monkeypatch.setattr(warmup, "jit_is_off", lambda: False)
+    code = "import sys; sys.exit('no compiler')"
+    monkeypatch.setattr(warmup, "this_rodsim", lambda _: [sys.executable, "-c", code])
+    warmup.ensure_compiled(build_scene(load("closed_ring")), said.append)
+    assert said[1].endswith("the run itself compiles, now and every time: no compiler")
+    assert not (tmp_path / LIST).exists()
 
 
 def test_once_is_not_said_where_nothing_can_be_kept(monkeypatch):
