@@ -253,6 +253,35 @@ def test_new_writes_a_case_that_is_valid(kind, here):
     assert "exists already" in again.stderr
 
 
+def test_new_lists_all_that_is_shipped_and_writes_each_with_what_it_reads(here):
+    listed = [line.split(maxsplit=1) for line in call("new").stdout.splitlines()]
+    shipped = {path.stem for path in CONFIGS.iterdir()} - {"rodsim.schema"}
+    assert {name for name, _ in listed} == shipped | {"open", "ring", "flagellum"}
+    cases = [name for name, _ in listed if (CONFIGS / f"{name}.yaml").exists()]
+    for name in cases:
+        assert call("new", name, f"my_{name}.yaml").exit_code == 0
+        assert "$schema" not in (here / f"my_{name}.yaml").read_text()  # of a file not here
+        assert rodsim.load_case(f"my_{name}.yaml").rods
+    assert (here / "traced_filament.csv").exists()
+
+
+def test_new_leaves_a_table_that_is_another_alone(here):
+    table = here / "traced_filament.csv"
+    table.write_text("s,kappa\n0,2\n")
+    result = call("new", "traced_filament", "case.yaml")
+    assert (result.exit_code, "traced_filament.csv: exists" in result.stderr) == (4, True)
+    assert [path.name for path in here.iterdir()] == [table.name]
+    table.unlink()
+    for case in ("case.yaml", "other.yaml"):  # the second finds the very same table
+        assert call("new", "traced_filament", case).exit_code == 0
+
+
+def test_new_of_a_name_that_is_none_says_which_is_near():
+    result = call("new", "closed_rign")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "did you mean 'closed_ring'" in result.stderr
+
+
 def test_validate_reports_on_every_file(here):
     (here / "bad.yaml").write_text("fluid: {viscosity: -2, epsilon: 0.3}\n")
     result = call("validate", RING, "bad.yaml")
