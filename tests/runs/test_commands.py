@@ -12,12 +12,13 @@ import time
 
 import numpy as np
 import pytest
+import yaml
 from click.testing import CliRunner
-from scenes import CONFIGS, load
+from scenes import CONFIGS, ROOT, load
 
 import rodsim
 from rodsim import open_trajectory
-from rodsim.cli import main
+from rodsim.cli import COMMANDS, main
 from rodsim.errors import DivergedError, StepFailure
 from rodsim.scene.build import build_scene
 
@@ -294,6 +295,35 @@ def test_schema_is_json_and_accepts_the_configs(here):
     schema = json.loads(call("schema").stdout)
     assert schema["$schema"] == "http://json-schema.org/draft-07/schema#"
     assert set(schema["required"]) == {"fluid", "rods", "time"}
+
+
+def test_cite_has_this_version_and_the_paper_for_people_and_for_bibtex():
+    cff = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+    assert cff["version"] == rodsim.__version__
+    text = call("cite").stdout
+    for words in (f"version {rodsim.__version__}", "238 (2013) 169\u2013187", cff["title"]):
+        assert words in text
+    entries = call("cite", "--bibtex").stdout
+    assert text.endswith(entries)
+    assert "author = {Olson, Sarah D. and Lim, Sookkyung and Cortez, Ricardo}," in entries
+    assert "pages = {169--187}," in entries
+    assert "author = {{The rodsim developers}}," in entries  # one name, not a list of words
+    assert entries.count("{") == entries.count("}")
+
+
+@pytest.mark.parametrize("name", ["", *COMMANDS])
+def test_no_line_of_a_help_is_longer_than_a_terminal(name):
+    arguments = [name, "--help"] if name else ["--help"]
+    text = CliRunner().invoke(main, arguments, terminal_width=80).stdout
+    assert max(map(len, text.splitlines())) <= 80
+
+
+def test_the_list_of_commands_has_their_first_sentences_whole():
+    listed = CliRunner().invoke(main, ["--help"], terminal_width=80).stdout
+    flat = " ".join(listed.split())
+    for name in COMMANDS:
+        text = " ".join(main.get_command(None, name).help.split("\n\n")[0].split())
+        assert f" {name} {text.partition('. ')[0].rstrip('.')}" in flat
 
 
 def test_version():
