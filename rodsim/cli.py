@@ -32,7 +32,9 @@ COMMANDS = (  # as the help lists them
     "flow",
     "export",
     "schema",
+    "cite",
 )
+WHOLE = 1000  # characters: more than a first sentence has
 DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # full, or gone
 EXIT_CODES = """\b
 Exit codes:
@@ -40,7 +42,8 @@ Exit codes:
    1  a bug in rodsim
    2  bad usage, or a case file missing, unreadable or invalid
    3  the run diverged
-   4  an output or shape file missing, unreadable, locked or not ours, or a write failed
+   4  an output or shape file missing, unreadable, locked or not ours,
+      or a write failed
   75  stopped early on purpose: go on with rodsim resume
 """
 
@@ -55,6 +58,12 @@ class _Group(click.Group):
         if name not in COMMANDS:
             return None
         return getattr(import_module(f"rodsim.commands.{name}"), name)
+
+    def format_commands(self, ctx, formatter):
+        """List the commands with their first sentences, which click would cut at the line's end."""
+        rows = [(c, self.get_command(ctx, c).get_short_help_str(WHOLE)) for c in COMMANDS]
+        with formatter.section("Commands"):
+            formatter.write_dl(rows)
 
     def invoke(self, ctx):
         try:

@@ -13,6 +13,12 @@ LONGEST_NAME = 200  # others are made of it: of the lock, of the file while it i
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
+def shipped(name: str) -> Path:
+    """Return the path of what lies beside the package in a checkout, and inside it in a wheel."""
+    inside = Path(__file__).parent / name
+    return inside if inside.exists() else inside.parent.parent / name
+
+
 def has_hdf5_signature(path: Path) -> bool:
     """Return whether a file begins as HDF5 files do; raises OSError if it cannot be read."""
     with path.open("rb") as stream:

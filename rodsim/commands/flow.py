@@ -17,11 +17,13 @@ from rodsim.commands.common import (
 
 GRID_HELP = """\b
 Grids (sizes follow the rods, with a margin, unless given):
-  plane                the plane in which the rods are largest
-  plane:yz             parallel to y and z, through the middle; plane:yz@0.5 at x = 0.5
-  line:z               along z, through the middle; line:z@0.5,2 at x = 0.5, y = 2
-  box                  all around the rods
-  0,-2:2:41,-3:3:61    x = 0, 41 values of y from -2 to 2, 61 values of z from -3 to 3
+  plane          the plane in which the rods are largest
+  plane:yz       parallel to y and z, through the middle;
+                 plane:yz@0.5 at x = 0.5
+  line:z         along z, through the middle; line:z@0.5,2 at x = 0.5, y = 2
+  box            all around the rods
+  0,-2:2:41,-3:3:61
+                 x = 0, 41 values of y from -2 to 2, 61 of z from -3 to 3
 """
 SEEDS = {1: 40, 2: 16, 3: 8}  # tracers along the longest side of a line, a plane, a box
 

@@ -12,12 +12,13 @@ import time
 
 import numpy as np
 import pytest
+import yaml
 from click.testing import CliRunner
-from scenes import CONFIGS, load
+from scenes import CONFIGS, ROOT, load
 
 import rodsim
 from rodsim import open_trajectory
-from rodsim.cli import main
+from rodsim.cli import COMMANDS, main
 from rodsim.errors import DivergedError, StepFailure
 from rodsim.scene.build import build_scene
 
@@ -253,6 +254,35 @@ def test_new_writes_a_case_that_is_valid(kind, here):
     assert "exists already" in again.stderr
 
 
+def test_new_lists_all_that_is_shipped_and_writes_each_with_what_it_reads(here):
+    listed = [line.split(maxsplit=1) for line in call("new").stdout.splitlines()]
+    shipped = {path.stem for path in CONFIGS.iterdir()} - {"rodsim.schema"}
+    assert {name for name, _ in listed} == shipped | {"open", "ring", "flagellum"}
+    cases = [name for name, _ in listed if (CONFIGS / f"{name}.yaml").exists()]
+    for name in cases:
+        assert call("new", name, f"my_{name}.yaml").exit_code == 0
+        assert "$schema" not in (here / f"my_{name}.yaml").read_text()  # of a file not here
+        assert rodsim.load_case(f"my_{name}.yaml").rods
+    assert (here / "traced_filament.csv").exists()
+
+
+def test_new_leaves_a_table_that_is_another_alone(here):
+    table = here / "traced_filament.csv"
+    table.write_text("s,kappa\n0,2\n")
+    result = call("new", "traced_filament", "case.yaml")
+    assert (result.exit_code, "traced_filament.csv: exists" in result.stderr) == (4, True)
+    assert [path.name for path in here.iterdir()] == [table.name]
+    table.unlink()
+    for case in ("case.yaml", "other.yaml"):  # the second finds the very same table
+        assert call("new", "traced_filament", case).exit_code == 0
+
+
+def test_new_of_a_name_that_is_none_says_which_is_near():
+    result = call("new", "closed_rign")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "did you mean 'closed_ring'" in result.stderr
+
+
 def test_validate_reports_on_every_file(here):
     (here / "bad.yaml").write_text("fluid: {viscosity: -2, epsilon: 0.3}\n")
     result = call("validate", RING, "bad.yaml")
@@ -265,6 +295,35 @@ def test_schema_is_json_and_accepts_the_configs(here):
     schema = json.loads(call("schema").stdout)
     assert schema["$schema"] == "http://json-schema.org/draft-07/schema#"
     assert set(schema["required"]) == {"fluid", "rods", "time"}
+
+
+def test_cite_has_this_version_and_the_paper_for_people_and_for_bibtex():
+    cff = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+    assert cff["version"] == rodsim.__version__
+    text = call("cite").stdout
+    for words in (f"version {rodsim.__version__}", "238 (2013) 169\u2013187", cff["title"]):
+        assert words in text
+    entries = call("cite", "--bibtex").stdout
+    assert text.endswith(entries)
+    assert "author = {Olson, Sarah D. and Lim, Sookkyung and Cortez, Ricardo}," in entries
+    assert "pages = {169--187}," in entries
+    assert "author = {{The rodsim developers}}," in entries  # one name, not a list of words
+    assert entries.count("{") == entries.count("}")
+
+
+@pytest.mark.parametrize("name", ["", *COMMANDS])
+def test_no_line_of_a_help_is_longer_than_a_terminal(name):
+    arguments = [name, "--help"] if name else ["--help"]
+    text = CliRunner().invoke(main, arguments, terminal_width=80).stdout
+    assert max(map(len, text.splitlines())) <= 80
+
+
+def test_the_list_of_commands_has_their_first_sentences_whole():
+    listed = CliRunner().invoke(main, ["--help"], terminal_width=80).stdout
+    flat = " ".join(listed.split())
+    for name in COMMANDS:
+        text = " ".join(main.get_command(None, name).help.split("\n\n")[0].split())
+        assert f" {name} {text.partition('. ')[0].rstrip('.')}" in flat
 
 
 def test_version():
