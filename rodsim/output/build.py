@@ -19,6 +19,7 @@ from rodsim.compiled.settings import machine
 from rodsim.errors import FileError
 from rodsim.output import layout
 from rodsim.output.checkpoint import allocate
+from rodsim.output.h5md import describe
 from rodsim.output.layout import CLOCK, Plan
 from rodsim.output.vtkhdf import build_view
 from rodsim.units import unit_text
@@ -105,6 +106,7 @@ def _fill(file, plan):
     if plan.bodies:
         _add_bodies(file.create_group("bodies"), plan.bodies)
     _add_series(file, plan)
+    describe(file)
     _add_runtime(file.create_group("runtime"))
     allocate(file.create_group("checkpoint"), plan.checkpoint)
     build_view(file, plan)
@@ -164,6 +166,7 @@ def _add_bodies(group, bodies):
 
 def _add_series(file, plan):
     frames = len(plan.times)
+    file.create_group("particles", track_order=True)  # H5MD readers may take its first group
     clock = file.create_group(CLOCK)
     preallocated(clock, "time", (frames,), np.nan)
     preallocated(clock, "step", (frames,), -1, np.int64)

@@ -108,7 +108,7 @@ def test_what_is_not_asked_for_is_not_stored(tmp_path):
     with create(tmp_path / "out.h5", **options) as writer:
         write(writer, range(1))
     with h5py.File(tmp_path / "out.h5") as file:
-        assert set(file["particles/trajectory"]) == {"position", "director"}
+        assert set(file["particles/trajectory"]) == {"position", "director", "box"}
         assert "tracers" not in file["particles"]
         assert "kinetic_energy" not in file["observables"]
 
