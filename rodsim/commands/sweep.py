@@ -26,6 +26,8 @@ _FILE, _FOLDER = (click.Path(path_type=Path, dir_okay=d, file_okay=not d) for d 
               help="Threads of each run; by default what is left when -j runs share the machine.")
 @click.option("--scheduler", metavar="ADDRESS",
               help="Use the workers of a running Dask scheduler, e.g. tcp://node:8786.")
+@click.option("--isolate", is_flag=True,
+              help="A process for each run, not one for many: slower where runs are short.")
 @click.option("--list", "only_list", is_flag=True,
               help="Print the commands that are left to do, one per line, and run none.")
 @click.option("--period", metavar="EXPRESSION",
@@ -42,8 +44,8 @@ _FILE, _FOLDER = (click.Path(path_type=Path, dir_okay=d, file_okay=not d) for d 
 @click.option("--from", "origin", metavar="previous|OUT.h5",
               help="With --rest: start each from the rest before it, or all from an output.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress.")
-def sweep(case_path, overrides, table, folder, jobs, threads, scheduler, only_list, period,
-          measures, reference, plots, rest, saddle, origin, quiet):
+def sweep(case_path, overrides, table, folder, jobs, threads, scheduler, isolate, only_list,
+          period, measures, reference, plots, rest, saddle, origin, quiet):
     # fmt: on
     """Run a case for many values: --set KEY=[A,B,C] runs over a list, here or on a cluster.
 
@@ -76,7 +78,7 @@ def sweep(case_path, overrides, table, folder, jobs, threads, scheduler, only_li
     table_path = folder / "summary.csv"
     try:
         if left:
-            _run(left, summary, table_path, (jobs, threads, scheduler, quiet, chained))
+            _run(left, summary, table_path, (jobs, threads, scheduler, isolate, quiet, chained))
     except KeyboardInterrupt:
         pass  # the table says what is left, the exit code too
     finally:
@@ -104,27 +106,40 @@ def _say_what_is_anew(left, summary):
 
 def _run(left, summary, table_path, options):
     """Start the engine and do what is left."""
-    jobs, threads, scheduler, quiet, chained = options
-    if chained:
-        _run_chain(left, summary, table_path, threads, quiet)
-        return
-    from rodsim.sweep import engine
+    jobs, threads, scheduler, isolate, quiet, chained = options
     from rodsim.sweep.display import make_display
 
-    if scheduler:
-        cluster = engine.remote_cluster(scheduler)
-    else:
-        _compile(left, quiet)
-        jobs, threads = engine.share(len(left), jobs, threads)
-        cluster = engine.local_cluster(jobs, threads)
-    with _signals() as heard, cluster as client, make_display(summary, quiet) as display:
+    if not scheduler:
+        _compile(left[0], quiet)
+    with _signals() as heard, make_display(summary, quiet) as display:
 
         def ended(run, failure):
             display.ended(summary.update(run, failure))
             summary.write_now_and_then(table_path)
 
-        sweep = engine.Sweep(client, threads, ended, summary.update, lambda: bool(heard))
-        sweep.finish(left, display)
+        def asked():
+            return bool(heard)
+
+        if chained:
+            from rodsim.sweep.rests import follow
+
+            follow(left, threads, isolate, ended, asked, display)
+            return
+        from rodsim.sweep.schedule import Sweep
+
+        with _engine(len(left), jobs, threads, scheduler, isolate) as engine:
+            Sweep(engine, ended, summary.update, asked).finish(left, display)
+
+
+def _engine(runs, jobs, threads, scheduler, isolate):
+    """Return the engine that does the runs: this machine, or the workers of a scheduler."""
+    if scheduler:
+        from rodsim.sweep.cluster import connect
+
+        return connect(scheduler, threads, isolate)
+    from rodsim.sweep.local import Local, share
+
+    return Local(*share(runs, jobs, threads), isolate)
 
 
 def _chained(rest, saddle, origin, scheduler):
@@ -138,33 +153,17 @@ def _chained(rest, saddle, origin, scheduler):
     return origin == "previous"
 
 
-def _run_chain(left, summary, table_path, threads, quiet):
-    """Do what is left one after another, without a cluster."""
-    from rodsim.sweep.display import make_display
-    from rodsim.sweep.rests import follow
-
-    _compile(left[:1], quiet)
-    with _signals() as heard, make_display(summary, quiet) as display:
-
-        def ended(run, failure):
-            display.ended(summary.update(run, failure))
-            summary.write_now_and_then(table_path)
-
-        follow(left, threads, ended, lambda: bool(heard), display)
-
-
-def _compile(left, quiet):
-    """Compile once what the runs need, instead of in every one of them at the same time."""
+def _compile(run, quiet):
+    """Compile what a run needs, and say so; what others need more, the first of them compiles."""
     prepare_numba()
     from rodsim.case import case_from_mapping
     from rodsim.errors import RodsimError
     from rodsim.run.warmup import ensure_compiled
     from rodsim.scene.build import build_scene
 
-    for run in left:
-        with suppress(RodsimError):  # which that run will report
-            scene = build_scene(case_from_mapping(run.data))
-            ensure_compiled(scene, lambda line: quiet or say(line))
+    with suppress(RodsimError):  # which that run will report
+        scene = build_scene(case_from_mapping(run.data))
+        ensure_compiled(scene, lambda line: quiet or say(line))
 
 
 @contextmanager

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import signal
 import threading
@@ -10,12 +9,12 @@ from time import monotonic
 
 # What Ctrl-C, kill and batch systems send, and a terminal that is closed; not all are everywhere.
 SIGNALS = ("SIGINT", "SIGTERM", "SIGUSR1", "SIGHUP")
-STARTED_BY = "RODSIM_STARTED_BY"  # set for a run whose standard input ends with who started it
 _DURATION = re.compile(
     r"\s*(?:(?P<d>\d+(?:\.\d*)?)d)?\s*(?:(?P<h>\d+(?:\.\d*)?)h)?"
     r"\s*(?:(?P<m>\d+(?:\.\d*)?)m(?:in)?)?\s*(?:(?P<s>\d+(?:\.\d*)?)s?)?\s*"
 )
 _SECONDS = {"d": 86400.0, "h": 3600.0, "m": 60.0, "s": 1.0}
+_for_all: list[str] = []  # why every run of this process stops
 
 
 def parse_duration(text: str) -> float:
@@ -35,6 +34,11 @@ def signals() -> list[int]:
     return [n for n in found if n != hangup or signal.getsignal(n) != signal.SIG_IGN]
 
 
+def stop_all(reason: str) -> None:
+    """Let every run of this process stop after its step, also those that have not begun."""
+    _for_all.append(reason)
+
+
 class Stopper:
     """Says, between two steps, why the run is to stop. A context manager that hears signals.
 
@@ -51,8 +55,6 @@ class Stopper:
         if threading.current_thread() is threading.main_thread():
             for number in signals():
                 self._before[number] = signal.signal(number, self._hear)
-        if starter := os.environ.get(STARTED_BY):
-            threading.Thread(target=self._outlive, args=(starter,), daemon=True).start()
         return self
 
     def __exit__(self, *error):
@@ -65,15 +67,11 @@ class Stopper:
         if self._last is not None:  # before the first step lies the start: kernels, the file
             self._longest = max(self._longest, now - self._last)
         self._last = now
+        if not self.reason and _for_all:
+            self.reason = _for_all[0]
         if not self.reason and self.deadline is not None and now + self._longest > self.deadline:
             self.reason = "the wall time given by --max-wall"
         return self.reason
-
-    def _outlive(self, starter):
-        """Wait for the end of who has started this run; then nobody wants it any more."""
-        while os.read(0, 1024):
-            pass
-        self.reason = self.reason or f"the end of {starter}"
 
     def _hear(self, number, frame):
         if self.reason and number == signal.SIGINT:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from importlib.util import find_spec
 from time import monotonic
 
 import click
@@ -136,5 +137,6 @@ class Table(Lines):
 
 
 def make_display(summary: Summary, quiet: bool) -> Lines:
-    """Return the display that suits stderr."""
-    return Table(summary) if sys.stderr.isatty() and not quiet else Lines(summary, quiet)
+    """Return the display that suits stderr; the live one is Rich's, of the extra ``sweep``."""
+    live = sys.stderr.isatty() and not quiet and find_spec("rich") is not None
+    return Table(summary) if live else Lines(summary, quiet)

@@ -11,6 +11,7 @@ from rodsim.errors import DivergedError, FileError
 from rodsim.scene.inputs import digests
 from rodsim.sweep.plan import Plan
 from rodsim.sweep.work import work
+from rodsim.sweep.workers import dismiss
 
 PREVIOUS = "previous"
 
@@ -33,19 +34,20 @@ def as_rests(plan: Plan, origin: str | None, options: tuple[str, ...] = ()) -> P
     return Plan(runs, plan.key_units)
 
 
-def follow(runs, threads, ended, asked, display) -> None:
+def follow(runs, threads, alone, ended, asked, display) -> None:
     """Find the rests of a chain one after another; KeyboardInterrupt where it is asked to stop.
 
-    ``ended(run, failure)`` is called for each, as by ``engine.Sweep``.
+    ``ended(run, failure)`` is called for each, as by :class:`rodsim.sweep.schedule.Sweep`.
     """
     token = uuid.uuid4().hex
     for run in runs:
         if asked():
             raise KeyboardInterrupt
         try:
-            code, said = work(token, run, threads)
+            code, said = work(token, run, threads, alone)
         except FileError as error:
             code, said = error.exit_code, str(error)
         came_out = code in (0, DivergedError.exit_code)
         ended(run, None if came_out else said or f"its command ended with code {code}")
         display.look()
+    dismiss(token)

@@ -21,7 +21,7 @@ from rodsim.output import open_trajectory
 from rodsim.sweep.at_rest import RESTS, SHOWN_AT_REST, total_energy
 from rodsim.sweep.measured import Measured
 from rodsim.sweep.plan import Plan, Run
-from rodsim.sweep.standing import standing
+from rodsim.sweep.standing import opened
 from rodsim.sweep.work import last_line
 from rodsim.units import unit_text
 
@@ -96,39 +96,37 @@ class Summary:
 
     def update(self, run: Run, failure: str | None = None) -> dict[str, Any]:
         """Read a run anew; ``failure`` is why its command could not do it. Returns its row."""
-        status = standing(run)
-        row = {"run": run.name, **run.values, "status": "failed" if failure else status}
-        try:
-            if status not in ("waiting", "running"):  # of what goes on the numbers are half-way
-                row |= self._results(run)
-        except UsageError as error:  # of a quantity of the user's own: the runs go on
-            row["message"] = str(error)
+        with opened(run) as (status, output):
+            row = {"run": run.name, **run.values, "status": "failed" if failure else status}
+            try:
+                if status not in ("waiting", "running"):  # of what goes on the numbers are half-way
+                    row |= self._results(run, output)
+            except UsageError as error:  # of a quantity of the user's own: the runs go on
+                row["message"] = str(error)
         if failure or status == "diverged":
             begins = "" if self.at_rest else "diverged in step"
             row["message"] = failure or last_line(run.log, begins)
         self.rows[run.name] = row
         return row
 
-    def _results(self, run):
-        with open_trajectory(run.output) as output:
-            if not output.frames:
-                return {}
-            energies = {
-                name: float(output.observable(name, -1).sum())
-                for name in output.observables
-                if name in self.results
-            }
-            energies["elastic_energy"] = sum(energies[f"{part}_energy"] for part in PARTS)
-            if self.at_rest:
-                energies["total_energy"] = total_energy(output)
-            period = _period(self.period, run)
-            velocity = _velocity(output, period)
-            measured = self._measured.of(output, period)
-            cost = {k: v for k, v in output.runtime.items() if k in self.results}
-            error = self._error(output)
-            time = float(output.time[-1])
-        found = {"time": time, **velocity, **energies, **error, **cost}
-        return {name: value for name, value in found.items() if name in self.results} | measured
+    def _results(self, run, output):
+        if not output.frames:
+            return {}
+        energies = {
+            name: float(output.observable(name, -1).sum())
+            for name in output.observables
+            if name in self.results
+        }
+        energies["elastic_energy"] = sum(energies[f"{part}_energy"] for part in PARTS)
+        if self.at_rest:
+            energies["total_energy"] = total_energy(output)
+        period = _period(self.period, run)
+        velocity = _velocity(output, period)
+        cost = {k: v for k, v in output.runtime.items() if k in self.results}
+        found = {"time": float(output.time[-1]), **velocity, **energies, **cost}
+        found |= self._error(output)
+        named = {name: value for name, value in found.items() if name in self.results}
+        return named | self._measured.of(output, period)
 
     def _error(self, output):
         if self._reference is None:

@@ -1,10 +1,9 @@
-"""One run on the machine this is called on: what is left of it, done by a command of its own."""
+"""One run on the machine this is called on: what is left of it, as a command that a worker does."""
 
 from __future__ import annotations
 
 import os
 import shlex
-import subprocess
 from contextlib import suppress
 from time import monotonic, sleep
 
@@ -12,29 +11,34 @@ from rodsim.errors import FileError, StoppedError
 from rodsim.locks import NamedLock
 from rodsim.output.paths import writing_process
 from rodsim.processes import this_rodsim
-from rodsim.run.stopping import STARTED_BY
+from rodsim.sweep import workers
 from rodsim.sweep.plan import Run
 from rodsim.sweep.standing import DONE, standing
 
 PATIENCE = 180.0  # s without a write after which one who may have gone is taken for gone
 POLL_SECONDS = 0.2
 STOPPED = StoppedError.exit_code, ""
-_running: list[tuple[str, subprocess.Popen]] = []  # (sweep, its run), of this process
 _stopped: set[str] = set()  # sweeps that want no more runs
 _begun: set[tuple[str, str]] = set()  # (sweep, name of a run) that this process is at
 
 
 def command(run: Run, stands: str) -> list[str]:
     """Return the command that does what is left of a run."""
+    return [*this_rodsim(), *_arguments(run, stands)]
+
+
+def _arguments(run, stands):
     if run.verb != "run":  # nothing that could be resumed
-        return [*this_rodsim(), run.verb, str(run.case), "-o", str(run.output), *run.options]
+        return [run.verb, str(run.case), "-o", str(run.output), *run.options]
     if stands in ("stopped", "running"):
-        return [*this_rodsim(), "resume", str(run.output)]
-    return [*this_rodsim(), "run", str(run.case), "-o", str(run.output)]
+        return ["resume", str(run.output)]
+    return ["run", str(run.case), "-o", str(run.output)]
 
 
-def work(sweep: str, run: Run, threads: int | None) -> tuple[int, str]:
+def work(sweep: str, run: Run, threads: int | None, alone: bool = False) -> tuple[int, str]:
     """Do a run from where it stands; return the exit code of its command and its last line.
+
+    ``alone``: in a process of its own; otherwise by one of the workers of the sweep.
 
     Whatever happened to an earlier call for the same run, this one goes on from its file. While
     another process does this run, a worker of another sweep or a command by hand, it is waited
@@ -46,14 +50,14 @@ def work(sweep: str, run: Run, threads: int | None) -> tuple[int, str]:
     _begun.add(entry)
     try:
         run.folder.mkdir(parents=True, exist_ok=True)
-        ended = _wait_while(lock.take, sweep, run) or _work_alone(sweep, run, threads)
+        ended = _wait_while(lock.take, sweep, run) or _do(sweep, run, threads, alone)
     finally:
         lock.release()
         _begun.discard(entry)
     return ended
 
 
-def _work_alone(sweep, run, threads):
+def _do(sweep, run, threads, alone):
     while True:
         ended = _wait_while(lambda: writing_process(run.output), sweep, run)
         if ended:
@@ -64,7 +68,7 @@ def _work_alone(sweep, run, threads):
         if sweep in _stopped:
             return STOPPED
         run.prepare()  # another sweep in this folder may have had another case
-        code, said = _execute(sweep, run, command(run, stands), threads)
+        code, said = _execute(sweep, run, stands, threads, alone)
         if code != FileError.exit_code or not writing_process(run.output):
             return code, said  # else someone was faster: that is waited for
 
@@ -73,38 +77,19 @@ def stop(sweep: str) -> list[str]:
     """Ask the runs of a sweep that this process has started to stop where they are, each once.
 
     Returns the names of the runs that it is still at; it begins no more of them.
-
-    SIGTERM and not SIGINT: one that comes while a run is still starting ends it, too.
     """
     _stopped.add(sweep)
-    for entry in [entry for entry in _running if entry[0] == sweep]:
-        _running.remove(entry)
-        entry[1].terminate()
+    workers.stop(sweep)
     return [name for of, name in list(_begun) if of == sweep]
 
 
-def _execute(sweep, run, line, threads):
-    environment = {"NUMBA_NUM_THREADS": "1", **os.environ}  # a thread of Dask stands for a core
-    environment[STARTED_BY] = "the sweep that started it"
-    if threads:
-        environment["NUMBA_NUM_THREADS"] = str(threads)
+def _execute(sweep, run, stands, threads, alone):
     with _log(run) as log:
         begin = _size(log)
         with suppress(OSError):  # a full disk: a log can be done without
-            os.write(log.fileno(), f"$ {shlex.join(line)}\n".encode())
-        # A session of its own: Ctrl-C on the terminal reaches the sweep, which then stops the runs.
-        # Its standard input ends with this process, however that ends, and the run then stops.
-        process = subprocess.Popen(
-            line, stdin=subprocess.PIPE, stdout=log, stderr=log, env=environment,
-            start_new_session=True,
-        )  # fmt: skip
-        _running.append((sweep, process))
-        try:
-            return process.wait(), last_line(run.log, since=begin)
-        finally:
-            process.stdin.close()
-            if (sweep, process) in _running:
-                _running.remove((sweep, process))
+            os.write(log.fileno(), f"$ {shlex.join(command(run, stands))}\n".encode())
+        code = workers.do(sweep, threads, _arguments(run, stands), log, alone)
+        return code, last_line(run.log, since=begin)
 
 
 def _log(run):

@@ -1,5 +1,6 @@
 """What is said beside the results can be lost; a run and its results cannot."""
 
+import json
 import os
 import subprocess
 import sys
@@ -9,7 +10,6 @@ import pytest
 from test_resume import PLANAR, make
 
 from rodsim import open_trajectory
-from rodsim.run.stopping import STARTED_BY
 
 needs_full = pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
 RODSIM = f"{sys.executable} -m rodsim"
@@ -59,7 +59,8 @@ from pathlib import Path
 from rodsim.compiled.settings import prepare
 prepare()
 from rodsim.run.watch import Watch
-from rodsim.__main__ import main
+import rodsim.run.stopping
+from {program} import main
 check = Watch.check
 def wait(self, step):
     if step.number == 20:
@@ -72,10 +73,16 @@ main()
 """
 
 
-def waiting(folder, condition):
+def waiting(folder, condition, program="rodsim.__main__"):
     """Return the command of a run that waits in its twentieth step while something is so."""
     make(folder, PLANAR)
-    return [sys.executable, "-c", WAITING.format(condition=condition), "run", "case.yaml"]
+    return [
+        sys.executable,
+        "-c",
+        WAITING.format(condition=condition, program=program),
+        "run",
+        "case.yaml",
+    ]
 
 
 def until_it_waits(folder):
@@ -95,15 +102,18 @@ def assert_stopped(path):
 
 def test_a_run_stops_with_who_has_started_it(tmp_path):
     """A sweep that is killed ends the pipe; the run goes no further than the step it is in."""
-    line = waiting(tmp_path, "any('_outlive' in thread.name for thread in threading.enumerate())")
-    pipe, environment = subprocess.PIPE, {**os.environ, STARTED_BY: "the sweep"}
+    line = waiting(tmp_path, "not rodsim.run.stopping._for_all", "rodsim.commands.serve")[:3]
+    order = json.dumps([["run", "case.yaml"], "run.log"])
     with subprocess.Popen(
-        line, cwd=tmp_path, env=environment, stdin=pipe, stderr=pipe, text=True
+        line, cwd=tmp_path, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     ) as process:
+        process.stdin.write(f"{order}\n")
+        process.stdin.flush()
         until_it_waits(tmp_path)
-        _, said = process.communicate(timeout=60)  # closes its standard input
-    assert process.returncode == 75
-    assert "stopped by the end of the sweep at t = " in said
+        answer, _ = process.communicate(timeout=60)  # closes its standard input
+    assert (answer, process.returncode) == ("75\n", 0)
+    said = (tmp_path / "run.log").read_text()
+    assert "stopped by the end of the sweep that started it at t = " in said
     assert_stopped(tmp_path / "out.h5")
 
 

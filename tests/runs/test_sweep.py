@@ -10,7 +10,7 @@ import subprocess
 import sys
 import threading
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -314,8 +314,11 @@ def test_list_prints_what_is_left_and_a_shell_can_run_it(here):
     assert call(*arguments, "--list").stdout.splitlines() == lines[1:]
 
 
-def test_a_sweep_runs_then_skips_then_draws(here):
+def test_a_sweep_runs_then_skips_then_draws(here, monkeypatch):
+    """Here, without a scheduler, the standard library is all it takes."""
     pytest.importorskip("matplotlib")
+    for name in ("dask", "distributed", "rich"):
+        monkeypatch.setitem(sys.modules, name, None)
     arguments = ("sweep", RING, *SHORT, "--set", "time.tolerance=[1e-3, 1e-5]")
     first = call(*arguments)
     assert first.exit_code == 0, first.stderr
@@ -359,7 +362,7 @@ def test_what_fails_or_diverges_is_reported_and_left(here):
 
 
 def test_a_wrong_period_column_or_scheduler_is_told_before_the_runs(here, monkeypatch):
-    monkeypatch.setattr("rodsim.sweep.engine.CONNECT_SECONDS", 1)
+    monkeypatch.setattr("rodsim.sweep.cluster.CONNECT_SECONDS", 1)
     arguments = ("sweep", RING, *SHORT, "--set", "time.tolerance=[1e-3, 1e-4]")
     for extra, words in (
         (("--period", "2*pi/sigma"), "sigma"),
@@ -403,13 +406,14 @@ def wait_for(condition, *processes):
 
 
 def run_of(worker):
-    """Return the process of the run that a worker is doing, with its output, or None."""
+    """Return the process that does a Dask worker's runs, with the output it is at, or None."""
     import psutil
 
     for child in psutil.Process(worker.pid).children():
-        line = child.cmdline()
-        if "rodsim" in line and line[-1].endswith("out.h5"):
-            return child, line[-1]
+        for lock in Path("sweep").glob("*/out.h5.lock"):
+            with suppress(OSError, ValueError):  # it is just ending
+                if json.loads(lock.read_text())["pid"] == child.pid:
+                    return child, lock.with_suffix("")
     return None
 
 
@@ -501,6 +505,7 @@ def test_runs_end_with_a_sweep_that_is_killed(here):
         assert "stopped by the end of the sweep" in (path.parent / "run.log").read_text()
 
 
+@pytest.mark.long
 @pytest.mark.compiled
 def test_a_scheduler_that_dies_is_told_in_a_line(here):
     slow = ("--set", "rods.ring.shape.points=[60, 64, 68]", "--set", "time.tolerance=1e-11")
