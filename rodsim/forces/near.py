@@ -11,6 +11,8 @@ import numpy as np
 from rodsim.nodes import Rods
 
 DIRECTION = np.array([0.4837592014, 0.6180339887, 0.6197138255])  # along nothing in particular
+WIDER = 1.0001  # than a limit: its length is not quite 1
+MOST = 1 << 20  # candidates looked at together
 
 
 def segments_within(reach: float, rods: Rods) -> np.ndarray:
@@ -26,20 +28,33 @@ def pairs_within(position: np.ndarray, rods: Rods, excluded: np.ndarray, limit: 
     Points are sorted along a direction that is parallel to nothing, so that only those next to each
     other there have to be looked at.
     """
-    position = position[:, : rods.points]
-    along = DIRECTION @ position
+    along = DIRECTION @ position[:, : rods.points]
     order = np.argsort(along, kind="stable")
+    along, sorted_points = along[order], position[:, order]
+    following = np.searchsorted(along, along + limit * WIDER, "right") - 1 - np.arange(along.size)
     found = [(np.zeros(0, int), np.zeros(0, int), np.zeros(0))]
-    for step in range(1, len(order)):
-        near = along[order[step:]] - along[order[:-step]] <= limit
-        if not near.any():
-            break
-        first, second = np.sort([order[:-step][near], order[step:][near]], axis=0)
-        distance = np.linalg.norm(position[:, first] - position[:, second], axis=0)
-        kept = (distance <= limit) & _count(rods, excluded, first, second)
-        found.append((first[kept], second[kept], distance[kept]))
+    for i, j in _runs(following):
+        apart = sorted_points[:, i] - sorted_points[:, j]
+        distance = np.sqrt((apart * apart).sum(axis=0))
+        near = np.flatnonzero(distance <= limit)
+        ends = order[i[near]], order[j[near]]
+        first, second = np.minimum(*ends), np.maximum(*ends)
+        kept = _count(rods, excluded, first, second)
+        found.append((first[kept], second[kept], distance[near[kept]]))
     first, second, distance = (np.concatenate(parts) for parts in zip(*found, strict=True))
     return first, second, distance
+
+
+def _runs(following):
+    """Yield i (n,), j (n,): each number with so many that follow it, some ``MOST`` at a time."""
+    ends, begin = np.cumsum(following), 0
+    while begin < len(following):
+        before = ends[begin] - following[begin]
+        end = max(begin + 1, int(np.searchsorted(ends, before + MOST, "right")))
+        many = following[begin:end]
+        i = np.repeat(np.arange(begin, end), many)
+        yield i, i + 1 + np.arange(len(i)) - np.repeat(ends[begin:end] - many - before, many)
+        begin = end
 
 
 def repulsion_stiffness(position, rods: Rods, fixed: np.ndarray):

@@ -13,7 +13,7 @@ from rodsim.scene.evaluation import Evaluation
 from rodsim.scene.state import Scene, State
 
 UNEVEN = 1e-7  # of the largest stiffness
-SMALL = 1e-4  # a motion, in rad and spacings
+SMALL = 1e-5  # a motion, in rad and spacings: few pairs begin or cease to touch in it
 ALIKE = 3e-7  # changes of the loads along it, of which differences leave 1e-8
 
 

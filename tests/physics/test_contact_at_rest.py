@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 from extremes import trefoil
-from scenes import end_of, final_state
+from scenes import end_of, final_state, load
 
 from rodsim.analysis.topology import twist, writhe
 from rodsim.forces.elastic import ENERGIES
+from rodsim.rest.forces import stored_energies
+from rodsim.rest.solve import find_rest
+from rodsim.scene.build import build_scene
 
 pytestmark = pytest.mark.compiled
 NONE = "contact=null"
@@ -89,3 +92,12 @@ def test_a_trefoil_becomes_a_circle_covered_twice():
             assert wound == pytest.approx(-3.0667, rel=1e-4)
     assert shares[0] == pytest.approx(1.0776, rel=1e-3)
     assert 1.0 < shares[1] < shares[0]
+
+
+def test_modes_are_counted_where_strands_all_but_touch():
+    """A thin trefoil: pairs at the very edge of contact must not look like loads without energy."""
+    scene = build_scene(load("trefoil", "contact.diameter=0.3"))
+    found = find_rest(scene)
+    elastic = sum(e for k, e in stored_energies(scene, found.state).items() if k != "contact")
+    assert (found.growing, found.neutral) == (0, 7)
+    assert 1.0 < elastic * 20.0 / (8.0 * np.pi**2 * 3.5e-3) < 1.02  # nearer 1 than 1.078, d = 0.6

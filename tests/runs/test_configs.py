@@ -241,6 +241,21 @@ def test_the_crossing_rods_hold_each_other_as_their_header_says(tmp_path):
     assert push[:3, :61].sum(axis=1) == pytest.approx([0, 0, -8.0e-3], abs=1e-5)
 
 
+@pytest.mark.compiled
+def test_the_trefoil_comes_to_rest_as_its_header_says(tmp_path):
+    output = tmp_path / "rest.h5"
+    result = CliRunner().invoke(main, ["rest", str(CONFIGS / "trefoil.yaml"), "-o", str(output)])
+    assert result.exit_code == 0, result.stderr
+    with open_trajectory(output) as trajectory:
+        energy = total(trajectory)
+        assert energy == pytest.approx([0.02937, 0.01489], rel=5e-4)
+        assert energy[-1] * 20 / (8 * np.pi**2 * 3.5e-3) == pytest.approx(1.0776, abs=1e-4)
+        for name, expected in (("writhe", [-3.5166, -3.0667]), ("linking_number", [-3, -3])):
+            assert trajectory.observable(name)[:, 0] == pytest.approx(expected, abs=1e-4)
+        assert trajectory.observable("gap")[-1] == pytest.approx(0.5891, abs=1e-4)
+        assert trajectory.observable("growing_modes")[-1] == 0
+
+
 def mean_rate(trajectory, name, begin, end):
     """Return the mean over a time of what an observable is the integral of."""
     first, last = (abs(trajectory.time - t).argmin() for t in (begin, end))
@@ -345,7 +360,7 @@ def test_every_config_is_tested_here():
         "two_flagella", "tapered_flagellum", "carpet",
         "plasmid", "traced_filament",
         "sedimenting_fibre", "fibre_in_shear", "tethered_pair",
-        "plectoneme", "two_rods_crossing",
+        "plectoneme", "two_rods_crossing", "trefoil",
         "swimmer_at_wall", "fibre_settling_on_wall", "suspension", "long_coil",
         "bacterium", "two_swimmers", "rotating_helix", "cilium",
         "michell_ring",
