@@ -29,4 +29,5 @@ links = re.findall(r"\]\(([^)]+)\)", said.get_payload())
 lost = [link for link in links if not link.startswith(("https://", "#"))]
 assert said.get_payload().count("\n## ") > 3
 assert not lost, f"the README leads nowhere from elsewhere: {lost}"
-print(f"rodsim {said['Version']} in {package.parent.name}: {len(scenes())} scenes, {len(links)} links")
+what = f"{len(scenes())} scenes, {len(links)} links"
+print(f"rodsim {said['Version']} in {package.parent.name}: {what}")

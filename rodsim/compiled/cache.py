@@ -81,3 +81,29 @@ def _warn_once():
         "folder that can be written",
         stacklevel=2,
     )
+
+
+def save_in_turn(lock) -> None:
+    """Let Numba save nothing but under ``lock()``, and nothing that is there by then.
+
+    Two processes that compile at once would else both add to an index, and what the first has
+    added is lost, or take the same name for the code of two functions.
+    """
+    from numba.core.caching import Cache
+
+    save = Cache.save_overload
+
+    def save_overload(cache, signature, compiled):
+        with lock():
+            if not _has(cache, signature, compiled):
+                save(cache, signature, compiled)
+
+    Cache.save_overload = save_overload
+
+
+def _has(cache, signature, compiled):
+    try:
+        key = cache._index_key(signature, compiled.codegen)
+        return cache._cache_file.load(key) is not None
+    except Exception:  # damaged, or another Numba's: written anew
+        return False

@@ -13,6 +13,7 @@ import os
 import sys
 import tempfile
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from pathlib import Path
 from time import perf_counter
 from zlib import crc32
@@ -20,8 +21,11 @@ from zlib import crc32
 from rodsim.compiled.kernels import jit_is_off
 from rodsim.compiled.settings import fingerprint, why_not_kept
 from rodsim.processes import this_rodsim
+from rodsim.progress import SECONDS_BETWEEN_LINES
 
 LIST = "compiled.json"
+MACHINE = "rodsim.run.machine"  # importing it compiles everything but the parts
+BACKWARDS = "--backwards"
 
 
 def ensure_compiled(scene, say) -> float:
@@ -45,22 +49,46 @@ def ensure_compiled(scene, say) -> float:
     kind = "-".join((fingerprint(), *kernels))
     if is_compiled(folder, kind):
         return 0.0
-    import subprocess  # what is compiled already has no use for it
-
     say(compiling)
     start = perf_counter()
     with suppress(OSError), _alone(folder):  # where nothing can be kept, the run itself compiles
         if not is_compiled(folder, kind):
             if _is_ours(folder, kind) and not _undamaged(folder):
                 _clear(folder)
-            command = [*this_rodsim("rodsim.run.warmup"), *kernels]
-            done = subprocess.run(command, capture_output=True, check=False, text=True)
-            if done.returncode == 0:
+            why = _compile_apart(folder, kernels, say)
+            if not why:
                 note_compiled(folder, kind)
             else:
-                why = done.stderr.strip().rpartition("\n")[2] or f"exit {done.returncode}"
                 say(f"that failed, so the run itself compiles, now and every time: {why}")
     return perf_counter() - start
+
+
+def _compile_apart(folder, kernels, say):
+    """Run ``main`` in a process of its own; say how far it is; return why it failed, if it did."""
+    import subprocess  # what is compiled already has no use for it
+
+    start, there = perf_counter(), _functions(folder)
+    pipes = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
+    command = [*this_rodsim("rodsim.run.warmup"), *kernels]
+    with subprocess.Popen(command, **pipes, text=True) as process:
+        try:
+            while process.poll() is None:
+                with suppress(subprocess.TimeoutExpired):
+                    process.wait(SECONDS_BETWEEN_LINES)
+                    break
+                new = _functions(folder) - there
+                say(f"compiled {new} functions in {perf_counter() - start:.0f} s, going on")
+            errors = process.stderr.read().strip()
+        except BaseException:
+            process.terminate()
+            raise
+    if process.returncode:
+        return errors.rpartition("\n")[2] or f"exit code {process.returncode}"
+    return ""
+
+
+def _functions(folder):
+    return sum(1 for _ in folder.rglob("*.nbc"))
 
 
 def is_compiled(folder: Path, kind: str) -> bool:
@@ -110,11 +138,11 @@ def _clear(folder):
 
 
 @contextmanager
-def _alone(folder):
+def _alone(folder, lock="lock"):
     """Hold a lock that the system takes back should this process die; none where it has none."""
     folder.mkdir(parents=True, exist_ok=True)
     flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
-    with os.fdopen(os.open(folder / "lock", flags, 0o600), "w") as lock:
+    with os.fdopen(os.open(folder / lock, flags, 0o600), "w") as lock:
         with suppress(ImportError, OSError):
             import fcntl
 
@@ -123,16 +151,45 @@ def _alone(folder):
 
 
 def main(kernels) -> None:
-    """Fill the cache with what every run needs, and with the parts of one kind of scene."""
+    """Fill the cache with what every run needs, and with the parts of one kind of scene.
+
+    In two processes, which begin at the two ends of the list. What one has compiled, the other
+    finds in the cache, and when the first is through, so is the list.
+    """
+    import signal
+    import subprocess
+
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that the helper is stopped too
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    command = [*this_rodsim("rodsim.run.warmup"), BACKWARDS, *kernels]
+    with subprocess.Popen(command, **quiet) as helper:
+        try:
+            _compile([MACHINE, *kernels])
+        finally:
+            with saving():  # it is writing nothing now
+                helper.kill()
+
+
+def _compile(names):
+    """Compile kernels ``module:name``, or what comes with the import of a module."""
     from rodsim.compiled.settings import prepare
 
     prepare()
-    import rodsim.run.machine  # noqa: F401  (importing it compiles everything but the parts)
+    from rodsim.compiled.cache import save_in_turn
     from rodsim.compiled.kernels import address_of
 
-    for kernel in kernels:
-        address_of(kernel)
+    save_in_turn(saving)
+    for name in names:
+        address_of(name) if ":" in name else import_module(name)
+
+
+def saving():
+    """Hold the lock on what is written to the cache."""
+    return _alone(Path(os.environ["NUMBA_CACHE_DIR"]), "saving")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    if BACKWARDS in sys.argv[1:2]:
+        _compile([*sys.argv[:1:-1], MACHINE])
+    else:
+        main(sys.argv[1:])
