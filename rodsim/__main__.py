@@ -19,6 +19,7 @@ def main():
     end the process in a crash that hides our message and exit code.
     """
     gc.set_threshold(OBJECTS_BETWEEN_COLLECTIONS)
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # looked for in every package
     prepare_streams()
     try:
         cli.main(prog_name="rodsim")

@@ -73,7 +73,7 @@ def flow(output, at, grid_text, resolution, path, colour, arrows, tracers, until
     from rodsim.compiled.threads import threads_for
     from rodsim.output import open_trajectory
 
-    with open_trajectory(output) as run, threads_for(10**6, threads):
+    with open_trajectory(output) as run, threads_for(10**12, threads):
         if tracers:
             _tracers(run, at, until, grid_text, resolution, path, quiet)
         else:

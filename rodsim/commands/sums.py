@@ -27,7 +27,7 @@ def describe_sums(case, scene) -> list[str]:
     accuracy = SHARE * time.tolerance if time.method.adaptive else SHARE * 1e-4
     accuracy = asked.accuracy if asked else max(accuracy, 1e-12)
     about = scene.rods.count, accuracy, scene.epsilon, scene.viscosity, scene.blob, scene.planar
-    with threads_for(points):
+    with threads_for(points**2):
         fast, position = RodSum(*about), scene.initial.position
         tables = fast.count(position)
         seconds = _seconds_a_pair(fast, position)

@@ -11,10 +11,32 @@ from pathlib import Path
 
 import numba
 from numba import njit
+from numba.core.caching import FunctionCache
+from numba.core.ccallback import CFunc
+from numba.core.runtime import rtsys
+from numba.core.sigutils import normalize_signature
 
+from rodsim.compiled.settings import without_scipy
 from rodsim.errors import FileError
 
 END = b"."  # of every pickle
+
+
+class _Cache(FunctionCache):
+    """Numba's cache of a function, read without what only compiling needs.
+
+    Before it reads, Numba's own prepares to compile: it looks through all functions and types that
+    it knows, which takes longer than to read what a run needs. Who compiles does so again.
+    """
+
+    def load_overload(self, sig, target_context):
+        """Return the compiled function of a signature, None where the cache has none."""
+        rtsys.initialize(target_context)  # memory of arrays, which the code on the disk calls
+        with without_scipy(), self._guard_against_spurious_io_errors():
+            found = self._load_overload(sig, target_context)
+            if found is None:
+                import numba.np.arraymath  # noqa: F401  (who compiles looks for SciPy there)
+            return found
 
 
 def cached_njit(*signature, **options):
@@ -26,9 +48,27 @@ def cached_njit(*signature, **options):
         return cached_njit(**options)(signature[0])
 
     def decorate(function):
-        return njit(*signature, cache=keeps(function), **options)(function)
+        made = njit(**options)(function)
+        if made is function:  # the JIT is off
+            return made
+        if keeps(function):
+            made._cache = _Cache(function)
+        for each in signature:
+            made.compile(each)
+        if signature:
+            made.disable_compile()
+        return made
 
     return decorate
+
+
+def cached_cfunc(function, signature, **options):
+    """Return what Numba's ``cfunc`` makes of a function, with its cache, as :func:`cached_njit`."""
+    made = CFunc(function, normalize_signature(signature), {}, options)
+    if keeps(function):
+        made._cache = _Cache(function)
+    made.compile()
+    return made
 
 
 _seen: dict[str, bool] = {}

@@ -15,11 +15,11 @@ from functools import partial
 
 import numpy as np
 from llvmlite import ir
-from numba import cfunc, types
+from numba import types
 from numba.extending import intrinsic
 
 from rodsim.compiled import threads
-from rodsim.compiled.cache import cached_njit, keeps
+from rodsim.compiled.cache import cached_cfunc, cached_njit
 from rodsim.compiled.kernels import interpreted, jit_is_off
 
 threads.start()
@@ -59,7 +59,7 @@ inline = partial(cached_njit, error_model="numpy", inline="always")
 
 def compile_part(function, signature):
     """Compile a part or a sum, or read it from the cache."""
-    return cfunc(signature, cache=keeps(function), error_model="numpy")(function)
+    return cached_cfunc(function, signature, error_model="numpy")
 
 
 def _jump(context, builder, signature, arguments):

@@ -8,6 +8,7 @@ import platform
 import shutil
 import sys
 import tempfile
+from contextlib import contextmanager
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -18,7 +19,7 @@ from rodsim.compiled.folder import private_folder, writable_folder
 from rodsim.errors import UsageError
 
 COMPILERS = ("numba", "llvmlite", "numpy")
-_not_kept = []
+_not_kept, _prepared = [], []
 LAYERS = ("default", "tbb", "omp", "workqueue", "safe", "threadsafe", "forksafe")
 
 
@@ -43,7 +44,9 @@ def prepare() -> None:
     _let_llvm_vectorise()
     # GNU OpenMP's idle threads spin: with a busy neighbour each sum then takes milliseconds.
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
-    _import_numba()
+    _prepared.append(True)
+    with without_scipy():
+        import numba  # noqa: F401
 
 
 def _allow_wide_vectors():
@@ -61,17 +64,19 @@ def _allow_wide_vectors():
         os.environ["NUMBA_CPU_FEATURES"] = f"{features.flatten()},-prefer-256-bit"
 
 
-def _import_numba():
-    """Import Numba while SciPy cannot be found.
+@contextmanager
+def without_scipy():
+    """Let Numba not find SciPy while it is imported, once ``prepare`` was called.
 
-    Numba looks for SciPy's BLAS, for products of matrices in kernels. Ours have none, and where
-    SciPy is installed its import takes a third of the time to start.
+    It looks for SciPy's version and BLAS, for products of matrices in kernels. Ours have none, and
+    where SciPy is installed its import takes a third of the time to start.
     """
-    if "scipy" in sys.modules:
+    if "scipy" in sys.modules or not _prepared:
+        yield
         return
     sys.modules["scipy"] = None
     try:
-        import numba.np.arraymath  # noqa: F401
+        yield
     finally:
         del sys.modules["scipy"]
 
@@ -132,6 +137,7 @@ def load_tbb() -> bool:
     return False
 
 
+@cache
 def fingerprint() -> str:
     """Return a name for this installation: its place (Numba's cache has it), source, processor."""
     digest = hashlib.sha256(f"{rodsim.__version__} {rodsim.__file__} {_source()}".encode())

@@ -9,10 +9,11 @@ import numba
 from rodsim.compiled.settings import LAYERS, load_tbb
 from rodsim.errors import UsageError
 
-PAIR_SECONDS = 1.5e-9  # one pair of the sums on one core
-# A sum must last this long, serial, to be worth sharing out: waking a thread that sleeps in GNU
-# OpenMP or in Numba's work queue costs 40-100 us, in tbb 1-2 us.
-WORTHWHILE = {"tbb": 3e-5, "omp": 3e-4, "workqueue": 3e-4}
+PAIR_SECONDS = 2e-9  # one pair of the sums on one core
+# What each of several threads adds to a sum: waking one that sleeps in GNU OpenMP or in Numba's
+# work queue costs far more than in tbb. Measured, docs/notes/performance.md.
+LAUNCH_SECONDS = {"tbb": 2.5e-6, "omp": 8e-5, "workqueue": 8e-5}
+NO_GAIN = 1.1  # what less time than this would save is not worth more threads
 _one_at_a_time = threading.RLock()
 _started_in = {}  # the layer, and the process its threads were started in
 
@@ -73,25 +74,36 @@ def _gnu():
 
 
 @contextmanager
-def threads_for(points: int, asked: int | None = None):
-    """Run a block with the threads that sums over ``points`` are worth; then restore the setting.
+def threads_for(pairs: float, asked: int | None = None):
+    """Run a block with the threads that sums over ``pairs`` are worth; then restore the setting.
 
     ``asked`` overrules the choice, up to the number that Numba was started with.
     """
     with computing():
         before = numba.get_num_threads()
-        numba.set_num_threads(_choose(points, asked))
+        numba.set_num_threads(_choose(pairs, asked))
         try:
             yield
         finally:
             numba.set_num_threads(before)
 
 
-def _choose(points, asked):
+def _choose(pairs, asked):
     most = numba.config.NUMBA_NUM_THREADS
     if asked is not None and asked < 1:
         raise UsageError(f"threads must be 1 or more, not {asked}")
     if asked is not None:
         return min(asked, most)
-    enough = WORTHWHILE.get(_layer(), WORTHWHILE["omp"])
-    return most if PAIR_SECONDS * points**2 > enough else 1
+    return threads_worth(PAIR_SECONDS * pairs, _layer(), most)
+
+
+def threads_worth(serial: float, layer: str, most: int) -> int:
+    """Return how many threads a sum is worth that takes ``serial`` seconds on one, up to ``most``.
+
+    On n > 1 it takes serial/n + n launch. The fewest count that come within a tenth of the best:
+    others can use the rest, and no number is chosen that is slower than a smaller one.
+    """
+    launch = LAUNCH_SECONDS.get(layer, LAUNCH_SECONDS["omp"])
+    seconds = [serial, *(serial / n + n * launch for n in range(2, most + 1))]
+    best = min(seconds)
+    return next(n for n, each in enumerate(seconds, 1) if each <= NO_GAIN * best)

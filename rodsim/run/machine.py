@@ -31,7 +31,9 @@ class Machine:
 
     def threads(self, asked: int | None):
         """Return the context in which sums run with the threads this scene is worth."""
-        return threads_for(self.system.scene.rods.points, asked)
+        scene = self.system.scene
+        sources = scene.rods.points
+        return threads_for(sources * (sources + scene.initial.tracer.shape[1]), asked)
 
     def step_warnings(self) -> list:
         """Return problems of a fixed step near its limit; raises CaseError above it."""

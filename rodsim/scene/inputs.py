@@ -9,7 +9,6 @@ from pathlib import Path
 from rodsim.case.inputs import input_entries
 from rodsim.errors import FileError
 from rodsim.files import has_hdf5_signature
-from rodsim.output import open_trajectory
 
 SAME, CHANGED, GONE = "unchanged", "has changed since", "cannot be read any more"
 
@@ -84,6 +83,8 @@ def _digest(path, frame):
 
 
 def _frame_digest(path, frame):
+    from rodsim.output import open_trajectory
+
     with open_trajectory(path) as run:
         digest = hashlib.sha256(repr((run.rods, sorted(run.units.items()))).encode())
         for name in ("position", "director"):
