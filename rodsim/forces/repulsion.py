@@ -33,9 +33,10 @@ from rodsim.forces.spheres import BLOCK, ROD, blocks_of, distance2, near_blocks,
 
 @unsigned
 def _numbers(fixed, rods):
-    """Return d, A (R,), excluded (R,), ds (N,)."""
+    """Return d, A (R,), which points count (see ``points_within``), ds (N,)."""
     n = rods[0].size
-    return fixed[0], fixed[1 : 1 + n], fixed[1 + n : 1 + 2 * n].astype(np.int64), fixed[1 + 2 * n :]
+    counting = rods[1], rods[2], fixed[1 + n : 1 + 2 * n].astype(np.int64)
+    return fixed[0], fixed[1 : 1 + n], counting, fixed[1 + 2 * n :]
 
 
 @unsigned
@@ -50,13 +51,13 @@ def _near(X, rods, reach):
 def push_apart(row, fixed, rods, state, loads, velocities):
     """Add the force between all points that are nearer to each other than d."""
     X = state[0]
-    d, strength, excluded, ds = _numbers(fixed, rods)
+    d, strength, counting, ds = _numbers(fixed, rods)
     table, radius, pairs, near = _near(X, rods, d)
     over_d2 = 1.0 / (d * d)
     for p in range(pairs.shape[0]):
         a, b = pairs[p, 0], pairs[p, 1]
         stiffness = 6.0 * min(strength[table[a, ROD]], strength[table[b, ROD]]) * over_d2
-        for m in range(points_within(X, table, radius, a, b, rods, excluded, d, near)):
+        for m in range(points_within(X, table, radius, a, b, counting, d, near)):
             i, j = near[m, 0], near[m, 1]
             q = 1.0 - distance2(X, i, j) * over_d2
             push = stiffness * ds[i] * ds[j] * q * q
@@ -80,12 +81,12 @@ def push_off_wall(row, fixed, rods, state, loads, velocities):
 @kernel(f"void({VEC}, {RODS}, {MAT}, {VEC})")
 def pair_energies(fixed, rods, X, out):
     """Add to ``out`` (R,) the energy of all pairs, half of it to each of the two rods."""
-    d, strength, excluded, ds = _numbers(fixed, rods)
+    d, strength, counting, ds = _numbers(fixed, rods)
     table, radius, pairs, near = _near(X, rods, d)
     for p in range(pairs.shape[0]):
         a, b, energy = pairs[p, 0], pairs[p, 1], 0.0
         r, s = table[a, ROD], table[b, ROD]
-        for m in range(points_within(X, table, radius, a, b, rods, excluded, d, near)):
+        for m in range(points_within(X, table, radius, a, b, counting, d, near)):
             i, j = near[m, 0], near[m, 1]
             q = 1.0 - distance2(X, i, j) / (d * d)
             energy += min(strength[r], strength[s]) * ds[i] * ds[j] * q * q * q
@@ -106,11 +107,11 @@ def closest_within(fixed, rods, X, reach):
 
     (reach, -1, -1) where none are nearer than that.
     """
-    excluded, least, first, second = _numbers(fixed, rods)[2], reach * reach, -1, -1
+    counting, least, first, second = _numbers(fixed, rods)[2], reach * reach, -1, -1
     table, radius, pairs, near = _near(X, rods, reach)
     for p in range(pairs.shape[0]):
         a, b = pairs[p, 0], pairs[p, 1]
-        for m in range(points_within(X, table, radius, a, b, rods, excluded, reach, near)):
+        for m in range(points_within(X, table, radius, a, b, counting, reach, near)):
             d2 = distance2(X, near[m, 0], near[m, 1])
             if d2 < least:
                 least, first, second = d2, int(near[m, 0]), int(near[m, 1])

@@ -60,22 +60,31 @@ def span(i, begin, end, same, count, closed, excluded):
 
 
 @unsigned
-def points_within(X, table, radius, a, b, rods, excluded, reach, found):
+def _too_near_along(begin, end, other, last, count, closed, excluded):
+    """Tell whether no point of a block counts for any of another one, further on along its rod."""
+    return last - 1 - begin <= excluded or (closed and other + 1 - end >= count - excluded)
+
+
+@inline
+def points_within(X, table, radius, a, b, counting, reach, found):
     """Write the pairs of points i < j of two blocks a <= b that are within ``reach`` and count.
 
     Into the first rows of ``found`` (BLOCK^2, 2); returns how many. Points count if they are of
     different rods, or more than ``excluded[r]`` segments apart along rod r, the shorter way round a
-    closed one. ``rods``: ``nodes.Rods.tables``.
+    closed one. counting: ``count`` and ``closed`` of the rods as in ``nodes.Rods.tables``, and
+    ``excluded``. Inline: a call with so many arrays costs more than most pairs of blocks.
     """
     r, same, n = table[a, ROD], table[a, ROD] == table[b, ROD], 0
+    rod = counting[0][r], counting[1][r], counting[2][r]
+    one, two, last = table[a, END], table[b, BEGIN], table[b, END]
+    if same and _too_near_along(table[a, BEGIN], one, two, last, *rod):
+        return 0
     far = (radius[b] + reach) * (1.0 + ROUNDING)
-    for i in range(table[a, BEGIN], table[a, END]):
+    for i in range(table[a, BEGIN], one):
         k = np.uint64(i)
         if distance2(X, k, np.uint64(table[b, MIDDLE])) > far * far:
             continue
-        begin, end = span(
-            i, table[b, BEGIN], table[b, END], same, rods[1][r], rods[2][r], excluded[r]
-        )
+        begin, end = span(i, two, last, same, *rod)
         x, y, z = X[0, k], X[1, k], X[2, k]
         for j in range(np.uint64(begin), np.uint64(max(begin, end))):
             dx, dy, dz = x - X[0, j], y - X[1, j], z - X[2, j]

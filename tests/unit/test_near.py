@@ -25,8 +25,9 @@ def near_pairs(X, rods, excluded, reach):
     """Return all pairs of points, block by block, as contact goes through them."""
     table, radius = spheres.blocks_of(X, rods[0], rods[1])
     found, near = [], np.empty((spheres.BLOCK**2, 2), dtype=np.uint64)
+    counting = rods[1], rods[2], excluded
     for a, b in spheres.near_blocks(X, table, radius, reach):
-        n = spheres.points_within(X, table, radius, a, b, rods, excluded, reach, near)
+        n = spheres.points_within(X, table, radius, a, b, counting, reach, near)
         found.append(near[:n].copy())
     return found
 
