@@ -35,9 +35,10 @@ def draw_plane(axis, right, up, velocity, colour, scale, arrows=False):
         axis.quiver(right[cut], up[cut], u[cut, cut] / size, v[cut, cut] / size, color=INK,
                     angles="xy", scale=0.9 * ARROWS, width=0.0025, pivot="mid")  # fmt: skip
     elif np.hypot(u, v).max() > 0.0:
+        share = style.share_of_page(axis.figure)
         clear = np.ma.masked_where(knots(u, v), u)
-        axis.streamplot(right, up, clear, v, color=INK, linewidth=0.7, arrowsize=0.8,
-                        density=DENSITY)  # fmt: skip
+        axis.streamplot(right, up, clear, v, color=INK, linewidth=0.7 * share,
+                        arrowsize=0.8 * share, density=DENSITY * share)  # fmt: skip
     axis.set_aspect("equal")
     axis.set_xlim(right[0], right[-1])
     axis.set_ylim(up[0], up[-1])

@@ -111,7 +111,7 @@ def _stage(camera, bounds, scene, time, sheet):
     figure = sheet.figure(size[0] + BAR + 0.4, size[1] + FRAME + 0.5, _title(scene, time))
     axis = figure.add_subplot()
     set_stage(axis, camera, bounds, np.minimum(size, figure.get_size_inches()))
-    annotate(figure, axis, camera, bounds, scene.units["length"])
+    annotate(np.array([[axis]]), camera, bounds, scene.units["length"])
     return figure, axis
 
 
@@ -130,7 +130,8 @@ def _draw_rods(axis, camera, scene):
         return
     if scene.bodies is not None:
         draw_bodies(axis, camera, *scene.bodies, zorder=3)
-    for colour, width in (((1.0, 1.0, 1.0, 1.0), 4.5), (ROD, 2.6)):
+    share = style.share_of_page(axis.figure)
+    for colour, width in (((1.0, 1.0, 1.0, 1.0), 4.5 * share), (ROD, 2.6 * share)):
         draw_rods(axis, camera, scene.rods, scene.position, None, 0.0, [colour] * len(colours),
                   "line")  # fmt: skip
         axis.collections[-1].set(linewidths=width, zorder=4)

@@ -78,7 +78,7 @@ def _screen(shapes, camera, bounds, key, title, made):
     axis = figure.add_subplot()
     size = figure.get_size_inches() - FRAME
     set_stage(axis, camera, bounds, size)
-    compass = annotate(figure, axis, camera, bounds, shapes.units["length"], key)
+    compass = annotate(np.array([[axis]]), camera, bounds, shapes.units["length"], key)
     draw_key(figure, [axis], camera, key)
     return figure, axis, compass
 

@@ -27,35 +27,58 @@ def draw_rods(axis, camera, rods, position, director, size, colours, kind="tube"
     bodies : points (S, 3) of surfaces and triangles (F, 3) between them, or None; behind lines,
         and among tubes and ribbons where they are.
     """
+    if kind == "line":
+        if bodies is not None:
+            draw_bodies(axis, camera, *bodies)
+        return _draw_lines(axis, camera, rods, position, colours)
     pieces, segments = [], sum(rod.count - (not rod.closed) for rod in rods)
-    if bodies is not None and kind == "line":
-        draw_bodies(axis, camera, *bodies)
-    elif bodies is not None:
+    if bodies is not None:
         pieces.append(body_faces(camera, *bodies))
     for rod, colour in zip(rods, colours, strict=True):
         nodes = slice(rod.first, rod.first + rod.count)
-        if kind == "line":
-            pieces.append(_line(camera, position[nodes], colour, rod.closed))
-        else:
-            cut = surface.pieces_of(rod.count - (not rod.closed), segments)
-            fine = surface.refined(position[nodes], director[nodes], cut, rod.closed)
-            painted = np.asarray(colour)
-            painted = painted.repeat(cut, axis=0) if painted.ndim == 2 else painted
-            draw = _tube if kind == "tube" else _ribbon
-            pieces.append(draw(camera, *fine, size, painted, rod.closed))
+        cut = surface.pieces_of(rod.count - (not rod.closed), segments)
+        fine = surface.refined(position[nodes], director[nodes], cut, rod.closed)
+        painted = np.asarray(colour)
+        painted = painted.repeat(cut, axis=0) if painted.ndim == 2 else painted
+        draw = _tube if kind == "tube" else _ribbon
+        pieces.append(draw(camera, *fine, size, painted, rod.closed))
     seen, painted = (np.concatenate(parts) for parts in zip(*pieces, strict=True))
     order = np.argsort(seen[..., 2].mean(axis=1), kind="stable")
     flat = seen[order][..., :2]
-    axis.add_collection(_collection(kind, flat, painted[order]), autolim=False)
-    axis.update_datalim(flat.reshape(-1, 2))  # what autoscale goes by
+    with style.matplotlib_needed():
+        from matplotlib.collections import PolyCollection
+    # The thin edge in the face's own colour hides the seams of antialiasing.
+    faces = PolyCollection(flat, facecolors=painted[order], edgecolors=painted[order],
+                           linewidths=0.3)  # fmt: skip
+    return _add(axis, faces, flat.reshape(-1, 2))
+
+
+def _draw_lines(axis, camera, rods, position, colours):
+    """Draw centrelines, each in one go where it has one colour, nearer over farther ones."""
+    with style.matplotlib_needed():
+        from matplotlib.collections import LineCollection
+    lines, painted = [], []
+    for rod, colour in zip(rods, colours, strict=True):
+        nodes = position[rod.first : rod.first + rod.count]
+        seen = camera.project(np.concatenate([nodes, nodes[:1]]) if rod.closed else nodes)
+        if np.ndim(colour) == 1:
+            lines.append(seen)
+            painted.append(colour)
+        else:
+            lines += [*np.stack([seen[:-1], seen[1:]], axis=1)]
+            painted += [*colour]
+    order = np.argsort([line[:, 2].mean() for line in lines], kind="stable")
+    flat = [lines[k][:, :2] for k in order]
+    drawn = LineCollection(flat, colors=[painted[k] for k in order], linewidths=1.8,
+                           capstyle="round", joinstyle="round")  # fmt: skip
+    return _add(axis, drawn, np.concatenate(flat))
+
+
+def _add(axis, collection, corners):
+    """Add a collection to an axis; its corners are what autoscale goes by."""
+    axis.add_collection(collection, autolim=False)
+    axis.update_datalim(corners)
     return axis
-
-
-def _line(camera, position, colour, closed):
-    """Return the pieces of a centreline (S, 2, 3) and their colours (S, 4)."""
-    seen = camera.project(np.concatenate([position, position[:1]]) if closed else position)
-    pieces = np.stack([seen[:-1], seen[1:]], axis=1)
-    return pieces, np.broadcast_to(colour, (len(pieces), 4))
 
 
 def _tube(camera, position, director, size, colour, closed):
@@ -83,15 +106,6 @@ def _ribbon(camera, position, director, size, colour, closed):
     painted = np.array(np.broadcast_to(colour, (len(seen), 4)))
     painted[surface.normals(seen)[..., 2] < 0.0, :3] *= BACK
     return seen, surface.shaded(painted, seen)
-
-
-def _collection(kind, pieces, colours):
-    with style.matplotlib_needed():
-        from matplotlib.collections import LineCollection, PolyCollection
-    if kind == "line":
-        return LineCollection(pieces, colors=colours, linewidths=1.8, capstyle="round")
-    # The thin edge in the face's own colour hides the seams of antialiasing.
-    return PolyCollection(pieces, facecolors=colours, edgecolors=colours, linewidths=0.3)
 
 
 def draw_tracers(axis, camera, position):

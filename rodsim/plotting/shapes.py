@@ -98,14 +98,15 @@ def draw_panels(shapes: Shapes, camera: Camera, title: str = "", key=None, sheet
     rows = -(-count // columns)
     full = columns * (width + GAP) + beside, rows * (height + TITLE) + below
     figure = sheet.figure(*full, title)
-    axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).ravel()
+    grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
+    axes = grid.ravel()
     for frame, axis in enumerate(axes[:count]):
         set_stage(axis, camera, bounds, (width, height))
         shapes.draw(axis, camera, frame)
         axis.set_title(shapes.stamp(frame), loc="left", pad=3)
     for axis in axes[count:]:
         axis.set_visible(False)
-    annotate(figure, axes[(rows - 1) * columns], camera, bounds, shapes.units["length"], key)
+    annotate(grid, camera, bounds, shapes.units["length"], key)
     draw_key(figure, list(axes[:count]), camera, key)
     return figure
 
@@ -123,7 +124,7 @@ def draw_overlay(shapes: Shapes, camera: Camera, title: str = "", key=None, shee
         shapes.draw(axis, camera, frame)
         for drawn in axis.collections[-1 - (LAYERS if shapes.arrows else 0) :]:
             drawn.set_zorder(2.0 + frame)
-    annotate(figure, axis, camera, bounds, shapes.units["length"], key)
+    annotate(np.array([[axis]]), camera, bounds, shapes.units["length"], key)
     draw_key(figure, [axis], camera, key)
     return figure
 

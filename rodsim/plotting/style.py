@@ -22,6 +22,7 @@ LOOK = {  # 8 to 9 points, as journals ask for; TrueType, as they do in .pdf
 }  # fmt: skip
 SLACK = 0.015  # inches: the antialiased edge of a letter
 PAD = 0.04  # inches around what is drawn
+PAGE = 6.0  # inches
 CHARACTERS = 14.0  # of a title in an inch
 LETTER, HANDLE = 0.065, 0.45  # inches: of a legend's letter, and of what stands before its text
 DECADES = 1e-6  # of the largest value: where logarithmic axes end
@@ -176,6 +177,11 @@ def name_values(axis, quantity: str, unit: str) -> None:
     ten = f"10{str(power).translate(_SUPERSCRIPTS)}"
     plain = "" if unit in ("", "1") else f" {pretty_unit(unit)}"
     axis.set_ylabel(f"{quantity} ({ten}{plain})")
+
+
+def share_of_page(figure) -> float:
+    """Return by how much lines are thinner and sparser in a figure that is not a page wide."""
+    return float(np.clip(figure.get_size_inches()[0] / PAGE, 0.5, 1.0))
 
 
 def legend_above(axis, handles=None, labels=None):

@@ -10,7 +10,8 @@ from rodsim.plotting.colours import Scale
 
 FRAME, BAR, LINE = 0.5, 0.9, 0.18  # inches below a tilted view, of a colour bar, of a line of text
 COMPASS, SCALE = 0.46, 1.1  # inches of the sides of the compass, right of it of a scale bar
-TICK = 0.55  # inches of an axis for each number beside it
+ROW = 1.0  # inches of a row of panels that has room for a label
+TICK = 0.45  # inches of an axis for each number beside it
 
 
 def set_stage(axis, camera: Camera, bounds, size=(8.0, 5.4)) -> None:
@@ -24,7 +25,7 @@ def set_stage(axis, camera: Camera, bounds, size=(8.0, 5.4)) -> None:
         axis.set_axis_off()
     for side, inches in zip((axis.xaxis, axis.yaxis), size, strict=True):
         count = int(np.clip(inches / TICK, 2, 6))
-        side.set_major_locator(MaxNLocator(count, steps=[1, 2, 5, 10], min_n_ticks=2))
+        side.set_major_locator(MaxNLocator(count, steps=[1, 2, 2.5, 5, 10], min_n_ticks=2))
 
 
 def draw_scale(axis, bounds, unit: str):
@@ -65,21 +66,25 @@ def draw_compass(figure, camera: Camera):
     return axis
 
 
-def annotate(figure, axis, camera: Camera, bounds, unit: str, key=None):
+def annotate(axes, camera: Camera, bounds, unit: str, key=None):
     """Say how large things are and where the axes point; return the compass, if there is one.
 
-    A strip at the bottom is left for that, and for the names in ``key``.
+    axes (rows, columns) of a figure. A strip at the bottom is left for that, and for the names in
+    ``key``.
     """
+    figure = axes[0, 0].figure
     width, height = figure.get_size_inches()
     strip = _strip(camera, key, width) / height
-    label = (LINE + style.PAD) / height if camera.flat else 0.0  # a label with a place has no room
-    figure.get_layout_engine().set(rect=(0.0, strip + label, 1.0, 1.0 - strip - label))
-    if camera.flat:
-        figure.supxlabel(style.label(camera.flat[0], unit), y=strip + 0.02 / height)
-        figure.supylabel(style.label(camera.flat[1], unit))
-        return None
-    draw_scale(axis, bounds, unit)
-    return draw_compass(figure, camera)
+    figure.get_layout_engine().set(rect=(0.0, strip, 1.0, 1.0 - strip))
+    if not camera.flat:
+        draw_scale(axes[-1, 0], bounds, unit)
+        return draw_compass(figure, camera)
+    for axis in axes[-1]:
+        axis.set_xlabel(style.label(camera.flat[0], unit))
+    every = height / len(axes) > ROW  # lower rows have no room for a label each
+    for axis in axes[:, 0] if every else axes[len(axes) // 2, :1]:
+        axis.set_ylabel(style.label(camera.flat[1], unit))
+    return None
 
 
 def draw_key(figure, axes, camera: Camera, key) -> None:
