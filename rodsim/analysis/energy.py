@@ -21,14 +21,15 @@ class EnergyTable:
     time; what is stored in the rods, and in tethers where there are any; total, the sum of that;
     kinetic where there is a density; work from outside and dissipated, both since t = 0, where
     anything acts from outside: then total + dissipated - work stays what it was, to O(ds^2).
-    of_rods : the elastic energies of each rod where there are several, ``left.bending``: (T,).
+    of_each : where there are several rods, tethers or hooks, the energies of each, ``left.bending``
+    or ``rope.tether``: (T,).
     """
 
     columns: tuple[str, ...]
     unit: str
     time_unit: str
     rows: np.ndarray
-    of_rods: dict[str, np.ndarray] = field(default_factory=dict)
+    of_each: dict[str, np.ndarray] = field(default_factory=dict)
 
     def text(self) -> str:
         """Return the table as aligned text."""
@@ -38,14 +39,14 @@ class EnergyTable:
         return "\n".join(lines)
 
     def write_csv(self, path) -> None:
-        """Write the table with full precision, and that of each rod; raises FileError."""
+        """Write the table with full precision, also of each rod and tether; raises FileError."""
         from rodsim.export.tables import write_csv
 
-        columns = [*np.transpose(self.rows), *self.of_rods.values()]
+        columns = [*np.transpose(self.rows), *self.of_each.values()]
         write_csv(path, self._heads(), [columns])
 
     def _heads(self):
-        names = (*self.columns, *self.of_rods)
+        names = (*self.columns, *self.of_each)
         return [f"{c} ({self.time_unit if c == 'time' else self.unit})" for c in names]
 
 
@@ -63,15 +64,15 @@ def energy_table(path, kelvin: float | None = None) -> EnergyTable:
         for column, name in BESIDE.items():
             if name in run.observables:
                 series[column] = _summed(run, name)
-        of_rods = _of_rods(run) if len(run.rods) > 1 else {}
+        of_each = (_of_rods(run) if len(run.rods) > 1 else {}) | _of_others(run)
         unit, units = run.unit("bending_energy"), run.units
     rows = np.array([*series.values()]).T
     if kelvin is not None:
         thermal = thermal_energy(kelvin, units)
         rows[:, 1:] /= thermal
-        of_rods = {name: values / thermal for name, values in of_rods.items()}
+        of_each = {name: values / thermal for name, values in of_each.items()}
         unit = f"kT at {kelvin:g} K"
-    return EnergyTable(tuple(series), unit, units["time"], rows, of_rods)
+    return EnergyTable(tuple(series), unit, units["time"], rows, of_each)
 
 
 def _of_rods(run):
@@ -80,6 +81,17 @@ def _of_rods(run):
     found = [(name, run.observable(o)) for name, o in stored if o in run.observables]
     rods = [(k, rod.name) for k, rod in enumerate(run.rods)]
     return {f"{rod}.{name}": values[:, k] for k, rod in rods for name, values in found}
+
+
+def _of_others(run):
+    """Return the energies of each tether and hook, by names such as ``rope.tether``."""
+    found = {}
+    for name in _stored(run)[len(PARTS) :]:
+        labels, values = run.labels(name), run.observable(name)
+        if len(labels) > 1:
+            part = name.removesuffix("_energy")
+            found |= {f"{of}.{part}": values[:, k] for k, of in enumerate(labels)}
+    return found
 
 
 def _stored(run):

@@ -204,5 +204,6 @@ def _other(run, name):
     if len(shape) > 1:
         return _stored(name, "as stored", "scene", run.unit(name))
     vector = shape == (3,) and name.endswith(("_force", "_torque"))
-    components = tuple("xyz") if vector else tuple(str(i) for n in shape for i in range(n))
+    rows = run.labels(name) or [str(i) for n in shape for i in range(n)]
+    components = tuple("xyz") if vector else tuple(rows)
     return _stored(name, "as stored", "scene", run.unit(name), components=components)

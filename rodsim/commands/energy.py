@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from rodsim.commands.common import STILLS, output_argument, say, written_path
+from rodsim.commands.sheet import sheet_options
 
 
 @click.command()
@@ -15,7 +16,8 @@ from rodsim.commands.common import STILLS, output_argument, say, written_path
               help="Write the table to a file as well.")  # fmt: skip
 @click.option("--plot", "plot_path", type=click.Path(path_type=Path, dir_okay=False),
               help="Draw the energies over time (needs rodsim[plot]).")  # fmt: skip
-def energy(output, kelvin, csv_path, plot_path):
+@sheet_options
+def energy(output, kelvin, csv_path, plot_path, size, dpi, title):
     """Print bending, twisting, shear, stretch, total and kinetic energy over time.
 
     With tethers theirs too, part of the total; where anything acts from outside, its work and what
@@ -33,5 +35,6 @@ def energy(output, kelvin, csv_path, plot_path):
         table.write_csv(csv_path)
     if plot_path:
         from rodsim.plotting.energy import plot_energies
+        from rodsim.plotting.style import Sheet
 
-        plot_energies(table, plot_path)
+        plot_energies(table, plot_path, Sheet(size, dpi, title))

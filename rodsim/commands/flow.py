@@ -14,6 +14,7 @@ from rodsim.commands.common import (
     warn,
     written_path,
 )
+from rodsim.commands.sheet import sheet_options
 
 GRID_HELP = """\b
 Grids (sizes follow the rods, with a margin, unless given):
@@ -46,7 +47,10 @@ TRUSTED = 0.1  # of epsilon: what tracers may be off by in one frame without a w
               "tracers .vtkhdf; by default OUT_flow.png. One that exists is replaced.")
 @click.option("--colour", "--color", type=click.Choice(("speed", "pressure")), default="speed",
               show_default=True, help="What the colour in a plane means.")
-@click.option("--arrows", is_flag=True, help="Arrows instead of stream lines.")
+@click.option("--arrows", is_flag=True,
+              help="Arrows instead of stream lines, of equal length: they show directions.")
+@click.option("--log", is_flag=True,
+              help="Logarithmic colours of the speed: what is slow, far away, is seen too.")
 @click.option("--tracers", is_flag=True,
               help="Follow tracers from the points of the grid, from --at on.")
 @click.option("--until", type=float, metavar="T",
@@ -54,10 +58,11 @@ TRUSTED = 0.1  # of epsilon: what tracers may be off by in one frame without a w
 @click.option("--raw", is_flag=True,
               help="Use the stored state as it is; its fastest modes are let settle "
               "otherwise.")
+@sheet_options
 @threads_option
 @click.option("-q", "--quiet", is_flag=True, help="No progress, no message.")
-def flow(output, at, grid_text, resolution, path, colour, arrows, tracers, until, raw, threads,
-         quiet):
+def flow(output, at, grid_text, resolution, path, colour, arrows, log, tracers, until, raw, threads,
+         size, dpi, title, quiet):
     # fmt: on
     """Compute velocity and pressure of the fluid around the rods of a stored run.
 
@@ -67,17 +72,20 @@ def flow(output, at, grid_text, resolution, path, colour, arrows, tracers, until
 
     default = output.with_name(f"{output.stem}_{'tracers' if tracers else 'flow'}.png")
     path = written_path(path or default, (*STILLS, *(TRACERS if tracers else FLOW)))
-    _refuse_unused(tracers, {"--arrows": arrows, "--raw": raw}, {"--until": until is not None})
+    for_flow = {"--arrows": arrows, "--log": log, "--raw": raw}
+    _refuse_unused(tracers, for_flow, {"--until": until is not None})
     there = path.exists()
     prepare_numba()
     from rodsim.compiled.threads import threads_for
     from rodsim.output import open_trajectory
 
+    sheet = size, dpi, title
     with open_trajectory(output) as run, threads_for(10**12, threads):
         if tracers:
-            _tracers(run, at, until, grid_text, resolution, path, quiet)
+            _tracers(run, at, until, grid_text, resolution, path, sheet, quiet)
         else:
-            _flow(run, at, grid_text, resolution, path, colour, arrows, raw, quiet)
+            drawn = colour, arrows, log
+            _flow(run, at, grid_text, resolution, path, drawn, raw, sheet, quiet)
     say_written(path, there, quiet)
 
 
@@ -90,7 +98,7 @@ def _refuse_unused(tracers, for_flow, for_tracers):
             raise UsageError(f"{option} is {'not for' if tracers else 'only for'} --tracers")
 
 
-def _flow(run, at, grid_text, resolution, path, colour, arrows, raw, quiet):
+def _flow(run, at, grid_text, resolution, path, drawn, raw, sheet, quiet):
     from rodsim.analysis.flow import flow_at
     from rodsim.analysis.grid import make_grid
     from rodsim.analysis.replay import Replay
@@ -104,15 +112,16 @@ def _flow(run, at, grid_text, resolution, path, colour, arrows, raw, quiet):
         click.echo(f"pressure: without that of {names}, which is not known", err=True)
     if path.suffix in STILLS:
         from rodsim.plotting.flow_pictures import plot_flow
+        from rodsim.plotting.style import Sheet
 
-        plot_flow(flow, _drawn(run, frame), path, colour, arrows)
+        plot_flow(flow, _drawn(run, frame), path, *drawn, Sheet(*sheet))
     else:
         from rodsim.export.flow import export_flow
 
         export_flow(flow, run.units, path)
 
 
-def _tracers(run, at, until, grid_text, resolution, path, quiet):
+def _tracers(run, at, until, grid_text, resolution, path, sheet, quiet):
     from rodsim.analysis.flow import tracer_paths
     from rodsim.analysis.grid import make_grid
     from rodsim.analysis.replay import Replay
@@ -134,8 +143,9 @@ def _tracers(run, at, until, grid_text, resolution, path, quiet):
     _say_miss(run, replay, paths, quiet)
     if path.suffix in STILLS:
         from rodsim.plotting.flow_pictures import plot_paths
+        from rodsim.plotting.style import Sheet
 
-        plot_paths(paths.time, paths.position, _drawn(run, last), path)
+        plot_paths(paths.time, paths.position, _drawn(run, last), path, Sheet(*sheet))
     else:
         from rodsim.export.flow import export_tracers
 
@@ -181,6 +191,7 @@ def _frame(run, asked, default, quiet):
 
 def _drawn(run, frame):
     from rodsim.plotting.flow_pictures import scene_to_draw
-    from rodsim.plotting.pictures import read_title, thickness
+    from rodsim.plotting.look import thickness
+    from rodsim.plotting.pictures import read_title
 
     return scene_to_draw(run, frame, read_title(run), thickness(run))

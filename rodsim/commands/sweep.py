@@ -7,7 +7,16 @@ from pathlib import Path
 
 import click
 
-from rodsim.commands.common import case_argument, prepare_numba, say, set_option, warn
+from rodsim.commands.common import (
+    STILLS,
+    case_argument,
+    prepare_numba,
+    say,
+    set_option,
+    warn,
+    written_path,
+)
+from rodsim.commands.sheet import sheet_options
 
 _FILE, _FOLDER = (click.Path(path_type=Path, dir_okay=d, file_okay=not d) for d in (False, True))
 
@@ -39,13 +48,20 @@ _FILE, _FOLDER = (click.Path(path_type=Path, dir_okay=d, file_okay=not d) for d 
               help="Give the largest distance from this output, at the end, as the error.")
 @click.option("--plot", "plots", type=(str, str, _FILE), multiple=True, metavar="X Y FILE",
               help="Draw one column over another (needs rodsim[plot]).")
+@click.option("--map", "maps", type=(str, str, str, _FILE), multiple=True, metavar="X Y Z FILE",
+              help="Draw column Z as colours over two keys, X and Y.")
+@click.option("--log", type=click.Choice(("x", "y", "xy", "none")),
+              help="Axes of these pictures that are logarithmic; by default those of positive "
+              "numbers over two decades or more.")
 @click.option("--rest", is_flag=True, help="Find states at rest instead, as rodsim rest does.")
 @click.option("--saddle", is_flag=True, help="With --rest: stay at states that are not stable.")
 @click.option("--from", "origin", metavar="previous|OUT.h5",
               help="With --rest: start each from the rest before it, or all from an output.")
+@sheet_options
 @click.option("-q", "--quiet", is_flag=True, help="No progress.")
 def sweep(case_path, overrides, table, folder, jobs, threads, scheduler, isolate, only_list,
-          period, measures, reference, plots, rest, saddle, origin, quiet):
+          period, measures, reference, plots, maps, log, rest, saddle, origin, size, dpi, title,
+          quiet):
     # fmt: on
     """Run a case for many values: --set KEY=[A,B,C] runs over a list, here or on a cluster.
 
@@ -53,6 +69,7 @@ def sweep(case_path, overrides, table, folder, jobs, threads, scheduler, isolate
     what was stopped is resumed.
     """
     from rodsim.sweep.plan import make_plan
+    from rodsim.sweep.series import check_grid
     from rodsim.sweep.standing import DONE
     from rodsim.sweep.summary import Summary
     from rodsim.sweep.work import command
@@ -63,9 +80,13 @@ def sweep(case_path, overrides, table, folder, jobs, threads, scheduler, isolate
         from rodsim.sweep.rests import as_rests
 
         plan = as_rests(plan, origin, ("--saddle",) * saddle)
-    names = tuple(name.strip() for text in measures for name in text.split(","))
-    summary = Summary(plan, period, reference, names)
-    pictures = [(summary.column(x), summary.column(y), path) for x, y, path in plots]
+    columns = tuple(name.strip() for text in measures for name in text.split(","))
+    summary = Summary(plan, period, reference, columns)
+    pictures = [([*map(summary.column, names)], path) for *names, path in (*plots, *maps)]
+    for names, path in pictures:
+        written_path(path, STILLS)
+        if len(names) == 3:
+            check_grid(summary, *names[:2])
     left = [run for run in plan.runs if summary.rows[run.name]["status"] not in DONE]
     _say_what_is_anew(left, summary)
     if only_list:
@@ -85,8 +106,8 @@ def sweep(case_path, overrides, table, folder, jobs, threads, scheduler, isolate
         folder.mkdir(parents=True, exist_ok=True)
         summary.write(table_path)
         say(summary.text(), err=False)
-        for x, y, path in pictures:
-            _draw(summary, x, y, path)
+        for names, path in pictures:
+            _draw(summary, names, path, log or "", (size, dpi, title))
     summary.check()
 
 
@@ -191,16 +212,26 @@ def _signals():
             signal.signal(number, handler)
 
 
-def _draw(summary, x, y, path):
-    heads = summary.head(x), summary.head(y)
-    if summary.at_rest:
+def _draw(summary, names, path, log, sheet):
+    """Draw one column over another, or a third one over two."""
+    from rodsim.plotting.columns import plot_columns, plot_map
+    from rodsim.plotting.style import Sheet
+    from rodsim.sweep.series import axis_label, grid, series
+
+    rows = [row for row in summary.rows.values() if {*names} <= row.keys()]
+    if not rows:
+        warn(f"{path}: not drawn: no run has {names[-1]} yet")
+        return
+    sheet, heads = Sheet(*sheet), [axis_label(summary, name) for name in names]
+    if len(names) == 3:
+        quantity = names[2].replace("_", " "), summary.unit(names[2])
+        plot_map(path, *grid(summary, *names), heads, quantity, log, sheet)
+    elif summary.at_rest:
         from rodsim.plotting.diagram import plot_diagram
 
-        rows = [row for row in summary.rows.values() if {x, y, "growing_modes"} <= row.keys()]
-        plot_diagram(path, *([row[c] for row in rows] for c in (x, y, "growing_modes")), heads)
+        known = [row for row in rows if "growing_modes" in row]
+        columns = ([row[c] for row in known] for c in (*names, "growing_modes"))
+        plot_diagram(path, *columns, heads, sheet)
     else:
-        from rodsim.plotting.columns import plot_columns
-
-        xs, ys, groups = summary.series(x, y)
-        plot_columns(path, xs, ys, groups, heads)
+        plot_columns(path, *series(summary, *names), heads, log, sheet)
     click.echo(f"drew {path}", err=True)

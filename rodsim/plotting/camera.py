@@ -27,6 +27,11 @@ class Camera:
         """Return right, up and depth (..., 3) of positions (..., 3); larger depth is nearer."""
         return position @ self.matrix.T
 
+    def turned(self, degrees: float) -> Camera:
+        """Return a tilted camera after the scene has turned about what is upright in it."""
+        about = _tilt() @ _turn(np.radians(degrees)) @ _tilt().T
+        return Camera(about @ self.matrix)
+
 
 def make_camera(view: str, position: np.ndarray, upright=False) -> Camera:
     """Return the camera for positions (..., 3).
@@ -59,6 +64,14 @@ def _frame(right, up):
 
 def _tilted():
     """Look from the right and from above."""
-    turn = np.array([[np.cos(TURN), 0, -np.sin(TURN)], [0, 1, 0], [np.sin(TURN), 0, np.cos(TURN)]])
-    tilt = np.array([[1, 0, 0], [0, np.cos(TILT), -np.sin(TILT)], [0, np.sin(TILT), np.cos(TILT)]])
-    return tilt @ turn
+    return _tilt() @ _turn(TURN)
+
+
+def _tilt():
+    cos, sin = np.cos(TILT), np.sin(TILT)
+    return np.array([[1, 0, 0], [0, cos, -sin], [0, sin, cos]])
+
+
+def _turn(angle):
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.array([[cos, 0, -sin], [0, 1, 0], [sin, 0, cos]])

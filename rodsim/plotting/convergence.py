@@ -35,6 +35,7 @@ TITLES = {
 }
 
 
+@style.styled
 def plot_study(study, path) -> None:
     """Draw a work-precision diagram and the errors against what was varied, to a file."""
     figure = style.new_figure(11, 4.8)

@@ -13,27 +13,33 @@ MOST_IN_LEGEND = 12
 FAR, MARGIN = 3.0, 0.08  # of the span of the other frames
 
 
-def plot_curves(tables: dict, path) -> None:
+@style.styled
+def plot_curves(tables: dict, path, sheet=style.PLAIN, log=False) -> None:
     """Draw :class:`~rodsim.analysis.table.Table` of runs, by their names, over time to a file.
 
-    The name of a single run may be an empty text. They must be in the same units.
+    The name of a single run may be an empty text. They must be in the same units. log : values on
+    logarithmic axes.
     """
     quantities = list(dict.fromkeys(c.quantity for t in tables.values() for c in t.columns))
-    figure = style.new_figure(6.4, 0.8 + 2.6 * len(quantities))
+    figure = sheet.figure(6.4, 0.8 + 2.6 * len(quantities))
     axes = figure.subplots(len(quantities), 1, squeeze=False, sharex=True)[:, 0]
     told = []
     for axis, quantity in zip(axes, quantities, strict=True):
-        draw_curves(axis, tables, quantity)
-        labels = axis.get_legend_handles_labels()[1]
-        if labels not in [[], *told] and len(labels) <= MOST_IN_LEGEND:
-            axis.legend(frameon=False)
-        told.append(labels)
+        draw_curves(axis, tables, quantity, log)
+        handles, labels = axis.get_legend_handles_labels()
+        notes = [k for k, handle in enumerate(handles) if handle.get_linestyle() == "None"]
+        names = [label for k, label in enumerate(labels) if k not in notes]
+        shown = range(len(labels))
+        if names in told or len(names) > MOST_IN_LEGEND:
+            shown = notes
+        style.legend_above(axis, [handles[k] for k in shown], [labels[k] for k in shown])
+        told.append(names)
     table = next(iter(tables.values()))
     axes[-1].set_xlabel(style.label("time", table.time_unit))
-    style.save(figure, path)
+    sheet.save(figure, path)
 
 
-def draw_curves(axis, tables: dict, quantity: str):
+def draw_curves(axis, tables: dict, quantity: str, log=False):
     """Draw one quantity of all tables on a matplotlib axis; return the axis.
 
     Colours tell runs apart, and rods where there is one run; dashes the other of the two.
@@ -47,12 +53,16 @@ def draw_curves(axis, tables: dict, quantity: str):
             of = table.columns[k].of if len(chosen) > 1 else ""
             label = " ".join(filter(None, (name, of))) or None
             axis.plot(table.time, table.values[:, k], dash, color=colour, lw=1.5, label=label)
-            axis.set_ylabel(style.label(quantity.replace("_", " "), table.columns[k].unit))
+            unit = table.columns[k].unit
             drawn.append((table.time, table.values[:, k]))
     begin, end = (edge(time[k] for time, _ in drawn) for edge, k in ((min, 0), (max, -1)))
     if end > begin:
         axis.set_xlim(begin, end)
-    _leave_out_the_jolt(axis, [values for _, values in drawn])
+    if log:
+        style.log_scale(axis, [values for _, values in drawn])
+    else:
+        _leave_out_the_jolt(axis, [values for _, values in drawn])
+    style.name_values(axis, quantity.replace("_", " "), unit)
     return axis
 
 
@@ -72,7 +82,7 @@ def _leave_out_the_jolt(axis, curves):
     axis.set_ylim(low - MARGIN * span, high + MARGIN * span)
     values = ", ".join(dict.fromkeys(f"{value:.3g}" for value in first))
     text = f"at the start: {values}" if len(first) < 4 else "the start is off the scale"
-    axis.annotate(text, (0.02, 0.97), xycoords="axes fraction", va="top", fontsize="small")
+    axis.plot([], [], " ", label=text)  # a line of the legend, which lies on no curve
 
 
 def run_names(paths) -> list[str]:

@@ -7,11 +7,12 @@ import numpy as np
 from rodsim.plotting import style
 
 
-def plot_diagram(path, x, y, growing, labels) -> None:
+@style.styled
+def plot_diagram(path, x, y, growing, labels, sheet=style.PLAIN) -> None:
     """Draw ``y`` over ``x`` (T,) to a file; see :func:`draw_diagram`."""
-    figure = style.new_figure(6.4, 4.2)
+    figure = sheet.figure(6.4, 4.2)
     draw_diagram(figure.add_subplot(), x, y, growing, labels)
-    style.save(figure, path)
+    sheet.save(figure, path)
 
 
 def draw_diagram(axis, x, y, growing, labels):
@@ -39,7 +40,7 @@ def draw_diagram(axis, x, y, growing, labels):
         axis.plot([], [], "ko", ms=5, mfc="white", label="not stable: growing modes")
     axis.set_xlabel(labels[0])
     axis.set_ylabel(labels[1])
-    axis.legend(frameon=False)
+    style.legend_above(axis)
     return axis
 
 

@@ -31,10 +31,3 @@ def draw_directors(axis, camera, rods, position, director, length):
         )  # fmt: skip
         axis.scatter(*start[~seen].T, s=9.0, color=colour, zorder=4, linewidths=0)
     return axis
-
-
-def draw_key(figure) -> None:
-    """Say at the top right of a figure which colour is which."""
-    for k, (name, colour) in enumerate(COLOURS.items()):
-        place = {"ha": "right", "va": "top", "fontsize": 10, "fontweight": "bold"}
-        figure.text(0.95 + 0.04 * k, 0.99, name, color=colour, **place)

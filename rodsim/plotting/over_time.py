@@ -7,36 +7,27 @@ import numpy as np
 from rodsim.plotting import style
 
 
-def draw_kymograph(axis, time, s, values, limits, text):
+def draw_kymograph(axis, time, s, values, scale):
     """Draw a quantity along a rod over time, as colour, on an axis; return the axis.
 
-    time (T,); s (S,): arc length of the rows; values (T, S); limits: lowest and highest colour;
-    text: label of the colour bar. An even spacing of ``s`` is assumed.
+    time (T,); s (S,): arc length of the rows; values (T, S); scale: what colours mean, a
+    :class:`~rodsim.plotting.colours.Scale`. An even spacing of ``s`` is assumed.
     """
     half = 0.5 * (s[1] - s[0]) if len(s) > 1 else 0.5
     middles = 0.5 * (time[1:] + time[:-1])
     edges = np.concatenate([time[:1], middles, time[-1:]])
     rows = np.append(s - half, s[-1] + half)
-    mesh = axis.pcolormesh(
-        edges, rows, values.T, cmap=style.COLOURS, vmin=limits[0], vmax=limits[1], rasterized=True
+    axis.pcolormesh(
+        edges, rows, values.T, cmap=scale.colours, vmin=scale.low, vmax=scale.high, rasterized=True
     )
-    axis.figure.colorbar(mesh, ax=axis, label=text, pad=0.02)
     return axis
 
 
-def limits_of(values) -> tuple[float, float]:
-    """Return the range of colours: from 0, or the same to both sides of it where signs differ."""
-    low, high = float(np.min(values)), float(np.max(values))
-    if low < 0.0 < high:
-        return -max(-low, high), max(-low, high)
-    return min(low, 0.0), max(high, 0.0) or 1.0
-
-
-def draw_speeds(axis, time, velocity, unit, time_unit):
+def draw_speeds(axis, time, velocity, unit, time_unit, log=False):
     """Draw how fast points move on an axis; return the axis.
 
     time (T,); velocity (T, N, 3). Three lines: the fastest point, max_k |u_k|; the root mean
-    square over the points; the centroid, |mean u|.
+    square over the points; the centroid, |mean u|. log : a logarithmic scale, also without a peak.
     """
     speed = np.linalg.norm(velocity, axis=2)
     lines = {
@@ -47,8 +38,10 @@ def draw_speeds(axis, time, velocity, unit, time_unit):
     for (name, values), dashes in zip(lines.items(), (":", "-", "--"), strict=True):
         axis.plot(time, values, dashes, lw=1.6, label=name)
     style.scale(axis, lines["fastest point"])
+    if log:
+        style.log_scale(axis, lines.values())
     axis.set_xlim(time[0], time[-1])
     axis.set_xlabel(style.label("time", time_unit))
-    axis.set_ylabel(style.label("speed", unit))
-    axis.legend(frameon=False)
+    style.name_values(axis, "speed", unit)
+    style.legend_above(axis)
     return axis

@@ -7,14 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from rodsim.analysis.wall import piece_of_wall
+from rodsim.errors import UsageError
 from rodsim.plotting import style
-from rodsim.plotting.camera import AXES, Camera
-from rodsim.plotting.directors import LAYERS, draw_directors, draw_key
+from rodsim.plotting.camera import Camera
+from rodsim.plotting.directors import LAYERS, draw_directors
 from rodsim.plotting.rod import draw_rods, draw_tracers
+from rodsim.plotting.surround import annotate, around, draw_key, set_stage
 from rodsim.plotting.wall import draw_wall, with_wall
 
 WIDTH, HEIGHT = 8.0, 5.4  # inches that the panels of a figure may take
-TITLE, FRAME, BAR = 0.3, 0.55, 0.9  # inches for a panel's title, for what is below, a colour bar
+TITLE = 0.22  # inches of the heading of a panel
+GAP = 0.1  # inches between panels
+WIDEST, LOWEST = 5.5, 0.3  # inches of a panel
 MARGIN = 0.04  # of the longest side, around what is drawn
 
 
@@ -55,141 +59,100 @@ class Shapes:
             draw_directors(axis, camera, self.rods, *shape[:2], self.arrows)
         return axis
 
-    def bounds(self, camera: Camera) -> np.ndarray:
-        """Return [[left, bottom], [right, top]] of all frames, with a margin."""
+    def bounds(self, camera: Camera, frame=slice(None)) -> np.ndarray:
+        """Return [[left, bottom], [right, top]] of all frames or one, with a margin."""
         points = self._points()
-        shown = with_wall(points, camera, piece_of_wall(points, self.wall))
+        shown = with_wall(self._points(frame), camera, piece_of_wall(points, self.wall))
         seen = camera.project(shown)[:, :2]
         low, high = seen.min(axis=0), seen.max(axis=0)
-        extent = (high - low).max() or np.ptp(points, axis=0).max() or 1.0  # seen end on
+        extent = np.ptp(points, axis=0).max() or 1.0
         space = MARGIN * extent + max(self.size if self.kind != "line" else 0.0, self.arrows)
         return np.array([low - space, high + space])
 
-    def _points(self):
+    def _points(self, frame=slice(None)):
         shown = [self.position, self.tracers]
         if self.surfaces is not None:
             shown.append(self.surfaces)
-        return np.concatenate(shown, axis=1).reshape(-1, 3)
+        return np.concatenate([points[frame].reshape(-1, 3) for points in shown])
 
     def stamp(self, frame: int) -> str:
         """Return the time of a frame with its unit."""
         return f"t = {self.time[frame]:.4g} {style.pretty_unit(self.units['time'])}"
 
+    def narrowest(self) -> float:
+        """Return how wide a panel must be for its heading, in inches."""
+        return 0.1 + style.LETTER * max(len(self.stamp(k)) for k in range(len(self.time)))
 
-def draw_panels(shapes: Shapes, camera: Camera, title: str = "", key=None):
+
+def draw_panels(shapes: Shapes, camera: Camera, title: str = "", key=None, sheet=style.PLAIN):
     """Return a figure with a panel for each frame, all at the same scale.
 
-    ``key``: (colour map, lowest, highest, text) of the colour bar, or None for none.
+    ``key``: what colours mean: a :class:`~rodsim.plotting.colours.Scale`, rgba by name, or None.
     """
-    bounds = shapes.bounds(camera)
-    count = len(shapes.time)
-    columns, width, height = _grid(count, bounds[1] - bounds[0])
-    rows = -(-count // columns)
-    figure = style.new_figure(
-        columns * width + (0.7 if camera.flat else 0.1) + (BAR if key else 0.0),
-        rows * (height + TITLE) + FRAME + (0.35 if title else 0.0),
+    bounds, count = shapes.bounds(camera), len(shapes.time)
+    beside, below = around(camera, key, sheet, title, WIDTH)
+    columns, width, height = _grid(
+        count, bounds[1] - bounds[0], sheet, (beside, below), shapes.narrowest()
     )
-    axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).ravel()
+    bounds = _widened(bounds, width / height)
+    rows = -(-count // columns)
+    full = columns * (width + GAP) + beside, rows * (height + TITLE) + below
+    figure = sheet.figure(*full, title)
+    grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
+    axes = grid.ravel()
     for frame, axis in enumerate(axes[:count]):
-        set_stage(axis, camera, bounds)
+        set_stage(axis, camera, bounds, (width, height))
         shapes.draw(axis, camera, frame)
-        axis.set_title(shapes.stamp(frame), fontsize=10, loc="left", pad=3)
+        axis.set_title(shapes.stamp(frame), loc="left", pad=3)
     for axis in axes[count:]:
         axis.set_visible(False)
-    annotate(figure, axes[0], camera, bounds, shapes.units["length"])
-    _finish(figure, list(axes[:count]), title, key, shapes.arrows)
+    annotate(grid, camera, bounds, shapes.units["length"], key)
+    draw_key(figure, list(axes[:count]), camera, key)
     return figure
 
 
-def draw_overlay(shapes: Shapes, camera: Camera, title: str = "", key=None):
+def draw_overlay(shapes: Shapes, camera: Camera, title: str = "", key=None, sheet=style.PLAIN):
     """Return a figure with all frames over each other, later ones on top."""
     bounds = shapes.bounds(camera)
-    _, width, height = _grid(1, bounds[1] - bounds[0])
-    figure = style.new_figure(width + 0.8 + (BAR if key else 0.0), height + 1.2)
+    beside, below = around(camera, key, sheet, title, WIDTH)
+    _, width, height = _grid(1, bounds[1] - bounds[0], sheet, (beside, below), shapes.narrowest())
+    bounds = _widened(bounds, width / height)
+    figure = sheet.figure(width + beside + GAP, height + below + TITLE, title)
     axis = figure.add_subplot()
-    set_stage(axis, camera, bounds)
+    set_stage(axis, camera, bounds, (width, height))
     for frame in range(len(shapes.time)):
         shapes.draw(axis, camera, frame)
         for drawn in axis.collections[-1 - (LAYERS if shapes.arrows else 0) :]:
             drawn.set_zorder(2.0 + frame)
-    annotate(figure, axis, camera, bounds, shapes.units["length"])
-    _finish(figure, [axis], title, key, shapes.arrows)
+    annotate(np.array([[axis]]), camera, bounds, shapes.units["length"], key)
+    draw_key(figure, [axis], camera, key)
     return figure
 
 
-def set_stage(axis, camera: Camera, bounds) -> None:
-    """Give an axis equal scales and its limits; a tilted view has no ticks."""
-    axis.set_aspect("equal")
-    axis.set_xlim(*bounds[:, 0])
-    axis.set_ylim(*bounds[:, 1])
-    if not camera.flat:
-        axis.set_axis_off()
+def _grid(count, extent, sheet, taken, narrowest):
+    """Return columns and the size of a panel, in inches: as large as can be, few gaps.
 
-
-def draw_scale(axis, bounds, unit: str):
-    """Draw a bar of a round length at the bottom left of an axis; return the axis."""
-    width = bounds[1, 0] - bounds[0, 0]
-    length = style.nice_length(0.25 * width)
-    left, bottom = bounds[0] + 0.02 * width
-    axis.plot([left, left + length], [bottom, bottom], color="0.2", lw=2.0, solid_capstyle="butt")
-    axis.annotate(
-        f"{length:g} {style.pretty_unit(unit)}", (left + length, bottom), xytext=(4, 0),
-        textcoords="offset points", va="center", fontsize=9, color="0.2",
-    )  # fmt: skip
-    return axis
-
-
-def draw_compass(figure, camera: Camera):
-    """Draw the directions of x, y and z as arrows at the bottom left of a figure, below the rest.
-
-    Returns the axis they are on.
+    A panel is never narrower than its heading, however tall what it shows. Raises UsageError where
+    a sheet has no room for that.
     """
-    width, height = figure.get_size_inches()
-    figure.get_layout_engine().set(rect=(0.0, FRAME / height, 1.0, 1.0 - FRAME / height))
-    axis = figure.add_axes((0.08 / width, 0.04 / height, FRAME / width, FRAME / height))
-    axis.set_in_layout(False)
-    axis.set_axis_off()
-    axis.set_xlim(-1.5, 1.5)
-    axis.set_ylim(-1.5, 1.5)
-    for name, (right, up, _) in zip(AXES, camera.matrix.T, strict=True):
-        arrow = {"arrowstyle": "->", "color": "0.2", "lw": 1.0, "shrinkA": 0, "shrinkB": 0}
-        axis.annotate("", (right, up), xytext=(0, 0), arrowprops=arrow)
-        axis.text(1.4 * right, 1.4 * up, name, ha="center", va="center", fontsize=8, color="0.2")
-    return axis
-
-
-def _grid(count, extent):
-    """Return columns and the size of a panel, in inches: as large as can be, few gaps."""
+    room = (WIDTH, HEIGHT) if sheet.size is None else np.subtract(sheet.size, taken)
     aspect = max(extent[1] / extent[0], 0.02)
     choices = []
-    for columns in range(1, min(count, 4) + 1):
+    for columns in range(1, max(1, min(count, int(room[0] / (narrowest + GAP)))) + 1):
         rows = -(-count // columns)
-        width = min(WIDTH / columns, (HEIGHT / rows - TITLE) / aspect, 5.5)
-        gaps = rows * columns - count
-        choices.append((width * (0.85 if gaps else 1.0), columns, width))
-    _, columns, width = max(choices)
-    return columns, width, width * aspect
+        width = min(room[0] / columns - GAP, (room[1] / rows - TITLE) / aspect, WIDEST)
+        high = max(width * aspect, LOWEST)
+        if sheet.size is None or rows * (high + TITLE) < room[1] + 0.01:
+            gaps = rows * columns - count
+            choices.append((round(width * (0.85 if gaps else 1.0), 6), columns, width, high))
+    if not choices or (sheet.size and narrowest > room[0]):
+        raise UsageError(style.too_small(sheet.size))
+    _, columns, width, high = max(choices)
+    return columns, max(width, narrowest), high
 
 
-def annotate(figure, axis, camera: Camera, bounds, unit: str) -> None:
-    """Say how large things are and where the axes point."""
-    if camera.flat:
-        figure.supxlabel(style.label(camera.flat[0], unit), fontsize=10)
-        figure.supylabel(style.label(camera.flat[1], unit), fontsize=10)
-        return
-    draw_scale(axis, bounds, unit)
-    draw_compass(figure, camera)
-
-
-def _finish(figure, axes, title, key, arrows):
-    if arrows:
-        draw_key(figure)
-    if title:
-        figure.suptitle(title, fontsize=11)
-    if key:
-        with style.matplotlib_needed():
-            from matplotlib.cm import ScalarMappable
-            from matplotlib.colors import Normalize
-        colours, low, high, text = key
-        mapped = ScalarMappable(Normalize(low, high), colours)
-        figure.colorbar(mapped, ax=axes, label=text, shrink=0.7, aspect=25, pad=0.02)
+def _widened(bounds, shape):
+    """Return bounds made wider or higher, about their middle, to the shape of their panel."""
+    width, height = bounds[1] - bounds[0]
+    more = np.maximum([height * shape, width / shape], (width, height)) - (width, height)
+    return bounds + 0.5 * more * np.array([[-1.0], [1.0]])

@@ -76,11 +76,15 @@ class Summary:
         results[place:place] = self._measured.columns
         return ["run", *self.plan.key_units, *results]
 
+    def unit(self, column: str) -> str:
+        """Return the unit of a column, "" where it has none."""
+        if column in self.results:
+            return unit_text(self.results[column], self.plan.runs[0].data["units"])
+        return self.plan.key_units.get(column, self._measured.columns.get(column, ""))
+
     def head(self, column: str) -> str:
         """Return the head of a column, with its unit."""
-        unit = self.plan.key_units.get(column, self._measured.columns.get(column, ""))
-        if column in self.results:
-            unit = unit_text(self.results[column], self.plan.runs[0].data["units"])
+        unit = self.unit(column)
         return f"{column} ({unit})" if unit not in ("", "1") else column
 
     def column(self, name: str) -> str:
@@ -143,24 +147,6 @@ class Summary:
         if counts.total() > counts["finished"]:
             raise SweepError(counts)
 
-    def series(self, x: str, y: str) -> tuple[list, list, list[str]]:
-        """Return two columns and the name of each row's line, of the rows that have both.
-
-        A line is named by the other keys of the sweep, without those that follow from ``x`` and
-        the keys before: a table often changes several together.
-        """
-        rows = [row for row in self.rows.values() if {x, y} <= row.keys()]
-        names: list[tuple[str, ...]] = [()] * len(rows)
-        for key in [key for key in self.plan.key_units if key not in (x, y)]:
-            values = [_short(row.get(key, "")) for row in rows]
-            known = {(_short(row[x]), name) for row, name in zip(rows, names, strict=True)}
-            told = {(_short(row[x]), n, v) for row, n, v in zip(rows, names, values, strict=True)}
-            if len(told) > len(known):
-                short = key.rpartition(".")[2]
-                names = [(*n, f"{short} = {v}") for n, v in zip(names, values, strict=True)]
-        columns = [[_plain(row[c]) for row in rows] for c in (x, y)]
-        return *columns, [", ".join(name) for name in names]
-
     def write(self, path) -> None:
         """Write the table as CSV, whole or not at all."""
         with (
@@ -170,7 +156,7 @@ class Summary:
             table = csv.writer(out)
             table.writerow([_harmless(self.head(column)) for column in self.columns])
             for row in self.rows.values():
-                table.writerow([_harmless(_cell(row.get(column, ""))) for column in self.columns])
+                table.writerow([_harmless(as_cell(row.get(column, ""))) for column in self.columns])
 
     def write_now_and_then(self, path) -> None:
         """Write the table unless it was written a moment ago: all of it at every end is N squared.
@@ -190,7 +176,7 @@ class Summary:
         columns = [*self.plan.key_units, *shown[:-1], *self._measured.columns, shown[-1]]
         columns = [c for c in columns if c in present]
         cells = [[self.head(c) for c in columns]]
-        cells += [[_short(row.get(c, "")) for c in columns] for row in self.rows.values()]
+        cells += [[short(row.get(c, "")) for c in columns] for row in self.rows.values()]
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
         lines = ["  ".join(c.rjust(w) for c, w in zip(line, widths, strict=True)) for line in cells]
         return "\n".join(lines)
@@ -224,7 +210,8 @@ def _last_frame(path):
         return float(output.time[-1]), output.read("position", -1)
 
 
-def _cell(value):
+def as_cell(value) -> str | int:
+    """Return a value as the table has it, with all its digits."""
     if isinstance(value, float):
         return repr(value)
     return value if isinstance(value, str | int) else json.dumps(value)
@@ -243,9 +230,6 @@ def _is_number(text):
         return False
 
 
-def _plain(value):
-    return value if isinstance(value, int | float) else _cell(value)
-
-
-def _short(value):
-    return f"{value:.5g}" if isinstance(value, float) else str(_cell(value))
+def short(value) -> str:
+    """Return a value as people read it."""
+    return f"{value:.5g}" if isinstance(value, float) else str(as_cell(value))

@@ -234,7 +234,7 @@ def test_paraview_sees_the_surface(towed, tmp_path):
 def test_bodies_are_drawn_where_they_are(towed, kind):
     pytest.importorskip("matplotlib")
     from rodsim.plotting import pictures, style
-    from rodsim.plotting.shapes import set_stage
+    from rodsim.plotting.surround import set_stage
 
     with open_trajectory(towed) as run:
         camera, shapes, _ = pictures._look(run, [0, run.frames - 1], "yz", kind, "time", False)

@@ -26,6 +26,7 @@ from rodsim.errors import CaseError, UsageError
 from rodsim.output.paths import OutputLock, writing_process
 from rodsim.sweep.names import folder_name
 from rodsim.sweep.plan import Plan, make_plan
+from rodsim.sweep.series import series
 from rodsim.sweep.standing import standing
 from rodsim.sweep.summary import Summary
 from rodsim.sweep.table import read_table
@@ -570,6 +571,6 @@ def test_series_name_lines_by_what_does_not_follow_from_x(here):
     summary = Summary(plan)
     for row in summary.rows.values():
         row["speed"] = 5.0
-    assert set(summary.series("fluid.viscosity", "speed")[2]) == {"points = 40", "points = 50"}
-    lines = summary.series("rods.ring.shape.points", "speed")[2]
+    assert set(series(summary, "fluid.viscosity", "speed")[2]) == {"points = 40", "points = 50"}
+    lines = series(summary, "rods.ring.shape.points", "speed")[2]
     assert set(lines) == {"viscosity = 2e-06", "viscosity = 3e-06"}
