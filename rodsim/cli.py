@@ -29,6 +29,7 @@ COMMANDS = (  # as the help lists them
     "energy",
     "measure",
     "plot",
+    "view",
     "flow",
     "export",
     "schema",

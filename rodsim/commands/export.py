@@ -12,8 +12,8 @@ from rodsim.commands.common import output_argument, say_written, written_path
 @output_argument
 @click.option("-o", "--output", "path", required=True,
               type=click.Path(path_type=Path, dir_okay=False),
-              help="File to write: .vtkhdf (ParaView), .csv or .npz. One that exists is "
-              "replaced.")
+              help="File to write: .vtkhdf (ParaView), .csv, .npz, or .py: a state of ParaView "
+              "with tubes and bodies. One that exists is replaced.")
 @click.option("--every", type=click.IntRange(min=1), default=1, show_default=True,
               help="Only every n-th frame.")
 @click.option("--tracers", is_flag=True, help="The fluid markers instead of the rods.")

@@ -1,4 +1,4 @@
-"""A stored run as .vtkhdf, .csv or .npz: rods and their data, or tracers."""
+"""A stored run as .vtkhdf, .csv or .npz: rods and their data, or tracers; or what opens it."""
 
 from __future__ import annotations
 
@@ -7,15 +7,16 @@ import math
 
 import numpy as np
 
-from rodsim.analysis.strain import bend, strain_twist
+from rodsim.analysis.strain import at_points
 from rodsim.analysis.wall import piece_of_wall
 from rodsim.errors import FileError
+from rodsim.export.paraview import write_state
 from rodsim.export.polydata import write_polydata
 from rodsim.export.tables import component_heads, head, write_csv, write_npz
 from rodsim.output.layout import OF_BODIES
 from rodsim.output.vtkhdf import rod_lines
 
-SUFFIXES = (".vtkhdf", ".csv", ".npz")
+SUFFIXES = (".vtkhdf", ".csv", ".npz", ".py")
 
 
 def export_run(run, path, *, every=1, tracers=False, radius=None, progress=None) -> None:
@@ -23,7 +24,8 @@ def export_run(run, path, *, every=1, tracers=False, radius=None, progress=None)
 
     ``tracers``: the fluid markers instead of the rods (an .npz always has both). ``radius``: of
     the tubes in ParaView, a length; by default that of the cylinder that drags the fluid along
-    as the rod does: ``epsilon e^(-1/2)``, or ``e^(-1)`` for algebraic9. With the rods an .vtkhdf
+    as the rod does: ``epsilon e^(-1/2)``, or ``e^(-1)`` for algebraic9. A .py is a state of
+    ParaView that opens the run itself, all frames. With the rods an .vtkhdf
     has the surfaces of bodies as triangles, and a piece of the wall, where there is one, as a
     polygon of four points more; their points have NaN for data. Raises FileError.
     """
@@ -32,7 +34,9 @@ def export_run(run, path, *, every=1, tracers=False, radius=None, progress=None)
         raise FileError(f"{run.path}: has no frames yet ({run.status})")
     if tracers and "tracers" not in run.fields:
         raise FileError(f"{run.path}: has no tracers")
-    if path.suffix == ".npz":
+    if path.suffix == ".py":
+        write_state(run, path, radius or tube_radius(run))
+    elif path.suffix == ".npz":
         write_npz(path, _arrays(run, slice(None, None, every)))
     elif path.suffix == ".csv":
         heads = _heads(run, tracers)
@@ -80,7 +84,7 @@ def _frame(run, frame, radius):
         if name == "director":
             triads = run.read(name, frame)
             data |= {f"D{i + 1}": triads[:, i] for i in range(3)}
-            data["curvature"], data["twist"] = _at_points(run, triads)
+            data["curvature"], data["twist"] = at_points(run.rods, triads)
         elif name not in ("position", "tracers"):
             data[name] = run.read(name, frame)
     return run.read("position", frame), data
@@ -106,18 +110,6 @@ def _with(more, position, data):
 
 def _arc(run):
     return np.concatenate([np.arange(rod.count) * rod.spacing for rod in run.rods])
-
-
-def _at_points(run, triads):
-    """Return curvature and twist at the points: the mean of the segments on both sides."""
-    parts = []
-    for rod in run.rods:
-        strain = strain_twist(triads[rod.first : rod.first + rod.count], rod.spacing, rod.closed)
-        values = np.stack([np.abs(bend(strain)), strain[:, 2]], axis=1)
-        before = np.roll(values, 1, axis=0) if rod.closed else np.vstack([values[:1], values])
-        after = values if rod.closed else np.vstack([values, values[-1:]])
-        parts.append(0.5 * (before + after))
-    return np.concatenate(parts).T
 
 
 def _heads(run, tracers):
