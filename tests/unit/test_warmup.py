@@ -141,6 +141,7 @@ def test_another_processor_source_or_version_has_a_cache_of_its_own(tmp_path, mo
     source.parent.mkdir()
     source.write_text("here")
     monkeypatch.setattr(settings.rodsim, "__file__", str(source))
+    monkeypatch.setattr(settings, "_source", settings._source.__wrapped__)
     folders = [settings.cache_folder()]
     source.write_text("there")
     folders.append(settings.cache_folder())
