@@ -6,11 +6,15 @@ import json
 import os
 import socket
 import sys
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
 
 import rodsim
+
+GROUPS = Path("/sys/fs/cgroup")
+QUOTAS = ("cpu.max", "cpu/cpu.cfs_quota_us cpu/cpu.cfs_period_us")  # of the two versions of them
 
 
 def this_rodsim(module: str = "rodsim") -> list[str]:
@@ -22,6 +26,22 @@ def this_rodsim(module: str = "rodsim") -> list[str]:
     root = str(Path(rodsim.__file__).parent.parent)
     safe = ["-P"] if root in sys.path[1:] else []  # sys.path[0] is the folder that -P leaves out
     return [sys.executable, *safe, "-m", module]
+
+
+def usable_cores(groups: Path = GROUPS) -> int:
+    """Return how many cores this process may use: those it may run on, and what a container has.
+
+    A container's share is a quota of time in each period, told in the files of its control group.
+    """
+    may_run_on = getattr(os, "sched_getaffinity", None)
+    cores = len(may_run_on(0)) if may_run_on else os.cpu_count() or 1
+    for names in QUOTAS:
+        with suppress(OSError, ValueError):  # not there; "max", no limit
+            texts = [(groups / name).read_text() for name in names.split()]
+            quota, period = map(int, " ".join(texts).split())
+            if quota > 0 and period > 0:
+                cores = min(cores, -(-quota // period))
+    return max(1, cores)
 
 
 @dataclass(frozen=True)

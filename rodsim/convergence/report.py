@@ -65,7 +65,7 @@ def _section(study, section):
     if section.amplified:
         apart = f"{section.rounding.position:.1e} {unit}"
         yield f"no bound: rounding is amplified, starts a last bit apart end {apart} apart"
-    yield f"largest and rms distance in {unit}, wall time in seconds; energy over the larger of its"
+    yield f"largest and rms distance in {unit}, {_clock(study)}; energy over the larger of its"
     yield "first and last value, speed over itself; ~: no larger than what the reference may err"
     names = ["method", "value", "largest", "of length", "rms", "angle/deg", "energy"]
     names += (
@@ -81,6 +81,14 @@ def _section(study, section):
             yield f"observed order of {what}: {order:.2f}"
 
 
+def _clock(study):
+    """Say what the wall time of a row was taken of."""
+    at_once = study.side_by_side
+    if at_once == 1:
+        return "wall time in seconds"
+    return f"wall time in seconds on {study.threads or 1} of the cores, {at_once} rows at once"
+
+
 def _order(result):
     return METHODS.index(result.row.method), -result.row.value
 
@@ -90,7 +98,7 @@ def _cells(section, result, swims, carries):
     if result.outcome is None:
         return [*head, result.status]
     run, e = result.outcome, result.errors
-    cost = [f"{np.median(run.seconds):.3g}", str(run.evaluations),
+    cost = [f"{run.best:.3g}", str(run.evaluations),
             f"{run.evaluations * run.pairs:.3g}"]  # fmt: skip
     if e is None:
         return [*head, "reference", *[""] * (4 + swims + carries), *cost]
@@ -117,14 +125,14 @@ def _choice(study, section):
         for method in methods:
             within = [r for r in done if r.row.method == method and r.errors.position <= 10**decade]
             if within:
-                fastest[method] = min(within, key=lambda r: np.median(r.outcome.seconds))
+                fastest[method] = min(within, key=lambda r: r.outcome.best)
         yield f"  1e{decade:+03d} {study.case.units.length}:  " + ";  ".join(_named(fastest))
 
 
 def _named(fastest):
     first = None
     for method, result in fastest.items():
-        seconds = float(np.median(result.outcome.seconds))
+        seconds = result.outcome.best
         ratio = "" if first is None else f" = {seconds / first:.3g} times that"
         first = first or seconds
         yield f"{method} {result.row.value:g} {seconds:.3g} s{ratio}"
@@ -139,7 +147,7 @@ class CsvRows:
 
     COLUMNS = ("section", "method", "value", "status",
                "position_error", "relative_error", "rms_error", "triad_angle_degrees",
-               "energy_error", "speed_error", "seconds", "seconds_low", "seconds_high", "repeats",
+               "energy_error", "speed_error", "seconds", "seconds_high", "repeats",
                "steps", "rejected", "evaluations", "pairs",
                "reference_error", "rounding_error", "tracer_error")  # fmt: skip
 
@@ -152,9 +160,9 @@ class CsvRows:
         e, run = result.errors, result.outcome
         known = ["" if e is None else e.position for e in (section.own, section.rounding)]
         *errors, tracers = [""] * 7 if e is None else [_cell(x) for x in vars(e).values()]
-        cost = [""] * 8
+        cost = [""] * 7
         if run is not None:
-            spread = np.median(run.seconds), min(run.seconds), max(run.seconds)
+            spread = run.best, max(run.seconds)
             cost = [*spread, len(run.seconds), run.steps, run.rejected, run.evaluations, run.pairs]
         row = result.row
         self._write(

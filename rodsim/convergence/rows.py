@@ -124,7 +124,7 @@ def points_rows(case, rate, epsilon) -> list[Row]:
             sum(round(rod.shape.segments * f) + (not rod.shape.is_closed)
                 for rod in case.rods.values()),
             (*refine(case, f), *keys),
-            guess(case, rate, SPACE_TOLERANCE) * f**2,
+            guess(case, rate, SPACE_TOLERANCE),  # the fastest rate is that of epsilon
         )
         for f in space_levels(case)
         if total

@@ -1,4 +1,4 @@
-"""The runs of a study, one after another, each held against a reference as it ends."""
+"""The rows of a study, each held against a reference when both have ended."""
 
 from __future__ import annotations
 
@@ -6,19 +6,20 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from rodsim.convergence import rows
-from rodsim.convergence.outcome import Errors, Outcome, compare, solve
+from rodsim.convergence.outcome import Errors, Outcome, compare
 from rodsim.convergence.rows import Row
-from rodsim.errors import CaseError, DivergedError, FileError, UsageError
+from rodsim.convergence.side_by_side import REFUSED, Runs
+from rodsim.errors import CaseError, FileError, UsageError
 from rodsim.integrators.limits import stability
 from rodsim.scene.build import build_scene
 from rodsim.scene.inputs import SAME, case_digests, compare_inputs
 from rodsim.scene.system import RodSystem
 
 REPEATS = 3
-BESIDE = 20_000  # pairs that all but the sums takes as long as, in an evaluation
+BESIDE = 50_000  # pairs that all but the sums takes as long as, in an evaluation
 ROUNDING = 1e-12  # of the longest rod: what a last bit is after a stable run
 AMPLIFIED = 0.1  # of the reference's own error: rounding is then part of it
-DONE, REFUSED, DIVERGED = "", "refused", "diverged"
+DONE = ""
 
 
 @dataclass(frozen=True)
@@ -65,13 +66,12 @@ class Study:
     """
 
     def __init__(self, load: Callable, axes, threads=None, progress=None):
-        self.load, self.threads, self.progress = load, threads, progress
-        self.case = load(())
+        self.load, self.threads, self.case = load, threads, load(())
         self.scene, self._inputs = build_scene(self.case), case_digests(self.case)
         self.limits = stability(RodSystem(self.scene))
         self.axes = [axis for axis in rows.AXES if axis in axes]
         self.sections: list[Section] = []
-        self._weights = self._done = 0.0
+        self._runs, self._cases = Runs(threads, progress), {}
 
     def run(self) -> Iterator[tuple[Section, Result]]:
         """Yield each row as it ends; ``sections`` holds them all.
@@ -80,11 +80,31 @@ class Study:
         have.
         """
         plan = self._plan()
-        parts = [row for _, part in plan for row in part]
-        twice = [row for _, part in plan for row in part[1:] if self._is_twin(row)]
-        self._weights = sum(map(self._weight, [*parts, *twice]))
-        for section, part in plan:
-            yield from self._section(section, part)
+        for row in [row for _, part in plan for row in part]:
+            self._ask(row)
+        for row in [row for _, part in plan for row in part[1:] if self._is_twin(row)]:
+            self._ask(row, nudged=True)
+        with self._runs:
+            for section, part in plan:
+                yield from self._section(section, part)
+
+    @property
+    def side_by_side(self) -> int:
+        """How many runs go on at once."""
+        return self._runs.side_by_side
+
+    def _ask(self, row, nudged=False):
+        """Ask for the run of a row; of one that cannot be, remember in words why not."""
+        own = f"fluid.epsilon={self.scene.epsilon!r}"  # so that rows with the same case know it
+        try:
+            case = self.load((*rows.quiet(self.case), own, *row.overrides))
+        except CaseError as error:
+            self._cases[row] = f"{REFUSED}: {error.problems[0].reason}"
+            return
+        self._cases[row] = case
+        repeats = 1 if nudged or row.axis == "time" else REPEATS
+        label = f"{row.method} {row.axis} {row.value:g}"
+        self._runs.ask(label, case, self._weight(row), nudged, repeats)
 
     def _plan(self):
         """Return (section, rows) in order; the first row of each is its reference.
@@ -151,7 +171,7 @@ class Study:
 
     def _section(self, section, part):
         first, *others = part
-        reference = self._outcome(first, repeats=1)
+        reference = self._outcome(first)
         if not isinstance(reference, Outcome):
             raise UsageError(f"{section.axis}: the reference ({section.reference}) is {reference}")
         self.sections.append(section)
@@ -184,35 +204,24 @@ class Study:
         return row.axis == "time"
 
     def _rounding(self, row, outcome):
-        twin = self._outcome(row, repeats=1, nudged=True)
+        twin = self._outcome(row, nudged=True)
         return compare(twin, outcome) if isinstance(twin, Outcome) else None
 
     def _result(self, row, first, reference):
         if row is first:
             return Result(row, reference)
-        outcome = self._outcome(row, repeats=1 if row.axis == "time" else REPEATS)
+        outcome = self._outcome(row)
         if not isinstance(outcome, Outcome):
             return Result(row, status=outcome)
         return Result(row, outcome, compare(outcome, reference))
 
-    def _outcome(self, row, repeats, nudged=False):
+    def _outcome(self, row, nudged=False):
         """Return the outcome of a row, or in words why there is none."""
-        weight = self._weight(row)
-        try:
-            case = self.load((*rows.quiet(self.case), *row.overrides))
-            self._same_inputs(case)
-            found = solve(
-                case,
-                self.threads,
-                repeats,
-                progress=lambda fraction: self._tick(row, fraction * weight),
-                nudged=nudged,
-            )
-        except CaseError as error:
-            found = f"{REFUSED}: {error.problems[0].reason}"
-        except DivergedError as error:
-            found = f"{DIVERGED}: {str(error).splitlines()[0]}"
-        self._done += weight
+        case = self._cases[row]
+        if isinstance(case, str):
+            return case
+        found = self._runs.outcome(case, nudged)
+        self._same_inputs(case)
         return found
 
     def _same_inputs(self, case):
@@ -220,11 +229,6 @@ class Study:
         for file, state in compare_inputs(self._inputs, case_digests(case)).values():
             if state != SAME:
                 raise FileError(f"{file}: {state}: the rows before are of another scene")
-
-    def _tick(self, row, part):
-        if self.progress:
-            fraction = (self._done + part) / self._weights
-            self.progress.update(min(1.0, fraction), f"{row.method} {row.axis} {row.value:g}")
 
     def _weight(self, row):
         """Return the cost of a row in pairs of its sums, roughly."""

@@ -96,8 +96,10 @@ def checksum(serial: int, arrays: dict[str, np.ndarray]) -> int:
 
 def _whole_serial(slot):
     """Return the serial number of a slot, 0 if it is torn or was never written."""
-    arrays = {name: data[()] for name, data in slot.items() if name != SEAL}
     serial, crc = slot[SEAL][:].tolist()
+    if not serial:  # as in every new file: there is nothing to check
+        return 0
+    arrays = {name: data[()] for name, data in slot.items() if name != SEAL}
     return serial if checksum(serial, _arrays(arrays)) == crc else 0
 
 

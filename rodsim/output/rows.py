@@ -29,6 +29,13 @@ class Rows:
         self._id.write(h5py.h5s.ALL, h5py.h5s.ALL, values)
 
 
+def put_number(dataset: h5py.Dataset, index: int, value) -> None:
+    """Write one number of a dataset that grows."""
+    space = dataset.id.get_space()
+    space.select_elements([(index,)])
+    dataset.id.write(h5py.h5s.create_simple((1,)), space, np.array([value], dtype=dataset.dtype))
+
+
 class Counter:
     """An attribute that is one whole number."""
 

@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 
 from rodsim.output.layout import SURFACES, TRAJECTORY, Plan
-from rodsim.output.rows import Counter
+from rodsim.output.rows import Counter, put_number
 
 VERSION = (2, 0)
 CELLS = ("Vertices", "Lines", "Polygons", "Strips")  # VTK insists on all four
@@ -62,7 +62,7 @@ class View:
         if index >= self._shown:
             self._shown = index + 1
             self._values.resize((self._shown,))
-        self._values[index] = time
+        put_number(self._values, index, time)
         self._file.flush()
 
     def show_all(self, times: np.ndarray) -> None:

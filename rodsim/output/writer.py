@@ -210,8 +210,8 @@ def _row(series, given, point_axis):
     if series.name not in given:
         raise ValueError(f"{series.name}: missing in a frame")
     row = np.asarray(given[series.name])
-    if row.ndim:
-        row = np.moveaxis(row, point_axis, 0)
+    if point_axis and row.ndim:
+        row = row.transpose(point_axis, *range(row.ndim - 1))
     if row.shape != series.shape:
         raise ValueError(f"{series.name}: {row.shape} in a frame, not {series.shape}")
     if not np.isfinite(row).all():

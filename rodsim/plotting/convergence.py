@@ -2,9 +2,11 @@
 
 import numpy as np
 
+from rodsim.convergence.outcome import pairs
 from rodsim.convergence.report import fitted_order
 from rodsim.plotting import style
 
+FEW_DECADES = 2.6  # on fewer, ticks stand at 2 and 5 as well
 MARKS = {"rkc": ("o", "#0b4f8a"), "euler": ("s", "#d1660f"), "rk4": ("^", "#3a7d2c")}
 SPACE = {
     "points": ("D", "#8a3b7a"),
@@ -37,32 +39,49 @@ TITLES = {
 
 @style.styled
 def plot_study(study, path) -> None:
-    """Draw a work-precision diagram and the errors against what was varied, to a file."""
-    figure = style.new_figure(11, 4.8)
-    left, right = figure.subplots(1, 2)
-    draw_work_precision(left, study)
-    draw_orders(right, study)
+    """Draw the errors against run time, evaluations, and what was varied, to a file."""
+    figure = style.new_figure(15, 4.8)
+    time, work, size = figure.subplots(1, 3, sharey=True)
+    draw_run_time(time, study)
+    draw_evaluations(work, study)
+    draw_orders(size, study)
+    time.set_ylabel(style.label("largest position error at the end", study.case.units.length))
     figure.suptitle(study.case.title or "Error against run time")
     style.save(figure, path)
 
 
-def draw_work_precision(axis, study):
+def draw_run_time(axis, study):
     """Draw the largest position error over the wall time of the solve; return the axis."""
+    _draw_cost(axis, study, lambda outcome: outcome.best)
+    axis.set_xlabel("wall time of the solve (s)")
+    return _finish(axis)
+
+
+def draw_evaluations(axis, study):
+    """Draw the largest position error over the evaluations of the sums; return the axis.
+
+    Those with other numbers of points count by their pairs, over those of the case itself. No
+    other work on the machine changes them, and any machine has the same.
+    """
+    own = pairs(study.scene)
+    _draw_cost(axis, study, lambda outcome: outcome.evaluations * outcome.pairs / own)
+    axis.set_xlabel("evaluations of the case's own sums")
+    return _finish(axis, legend=False)
+
+
+def _draw_cost(axis, study, cost):
     for section in study.sections:
         for method, part in _by_method(section):
-            seconds = [np.median(r.outcome.seconds) for r in part]
+            costs = [cost(r.outcome) for r in part]
             errors = [r.errors.position for r in part]
             marker, colour = SPACE.get(section.axis) or MARKS[method]
             label = f"{method}, {TITLES[section.axis]}"
-            axis.loglog(seconds, errors, DASHES[section.axis], marker=marker, c=colour, label=label)
+            axis.loglog(costs, errors, DASHES[section.axis], marker=marker, c=colour, label=label)
         if section.axis == "time" and section.own and section.own.position > 0.0:
             axis.axhline(section.own.position, c="0.6", lw=1, zorder=0)
             axis.annotate("the reference is good to this", (0.98, section.own.position),
                           xycoords=("axes fraction", "data"), ha="right", va="bottom",
                           color="0.45", fontsize=8)  # fmt: skip
-    axis.set_xlabel("wall time of the solve (s)")
-    axis.set_ylabel(style.label("largest position error at the end", study.case.units.length))
-    return _finish(axis)
 
 
 def draw_orders(axis, study):
@@ -79,7 +98,6 @@ def draw_orders(axis, study):
             errors = [r.errors.position for r in part]
             axis.loglog(sizes, errors, DASHES[section.axis], marker=marker, c=colour, label=label)
     axis.set_xlabel(" or ".join(SIZES[section.axis] for section in study.sections))
-    axis.set_ylabel(style.label("largest position error at the end", study.case.units.length))
     return _finish(axis)
 
 
@@ -108,14 +126,37 @@ def _what(section):
     return names.get(section.axis, "spacing of bodies")
 
 
-def _finish(axis):
-    from matplotlib.ticker import LogLocator, NullFormatter
-
+def _finish(axis, legend=True):
     if axis.get_legend_handles_labels()[0]:  # there is something to see
-        axis.legend(frameon=False, fontsize=8)
-        for side in (axis.xaxis, axis.yaxis):
-            side.set_major_locator(LogLocator(numticks=7))
-            side.set_minor_formatter(NullFormatter())
+        if legend:
+            axis.legend(frameon=False, fontsize=8)
+        for side, limits in ((axis.xaxis, axis.get_xlim()), (axis.yaxis, axis.get_ylim())):
+            _readable(side, *limits)
     axis.grid(which="major", color="0.9")
     axis.set_axisbelow(True)
     return axis
+
+
+def _readable(side, low, high):
+    """Give a logarithmic side up to nine numbers: powers of ten, or between them 2 and 5."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    decades = np.log10(high / low)
+    between = (1.0, 2.0, 5.0) if decades < FEW_DECADES else (1.0,)
+    side.set_major_locator(LogLocator(subs=between, numticks=9))
+    side.set_major_formatter(FuncFormatter(lambda value, place: number_text(value)))
+    side.set_minor_formatter(NullFormatter())
+
+
+def number_text(value: float) -> str:
+    """Return a tick's number as it is written: plain from 0.001 to 10 000, else by powers of ten.
+
+    >>> number_text(0.02), number_text(1e-6), number_text(2e5)
+    ('0.02', '$10^{-6}$', '$2\\\\times10^{5}$')
+    """
+    if 1e-3 <= value <= 1e4:
+        return f"{value:.6g}"
+    power = int(np.floor(np.log10(value) + 1e-9))
+    factor = round(value / 10.0**power)
+    times = "" if factor == 1 else rf"{factor}\times"
+    return f"${times}10^{{{power}}}$"

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import queue
 import threading
 from concurrent.futures import Future
 from contextlib import suppress
-from pathlib import Path
 
+from rodsim.processes import usable_cores
 from rodsim.sweep import work, workers
-
-QUOTAS = ("cpu.max", "cpu/cpu.cfs_quota_us cpu/cpu.cfs_period_us")  # of the two versions of cgroups
 
 
 def share(runs: int, jobs: int | None, threads: int | None) -> tuple[int, int]:
@@ -23,22 +20,6 @@ def share(runs: int, jobs: int | None, threads: int | None) -> tuple[int, int]:
     cores = usable_cores()
     jobs = jobs or max(1, min(runs, cores // (threads or 1)))
     return jobs, threads or max(1, cores // jobs)
-
-
-def usable_cores(groups: Path = Path("/sys/fs/cgroup")) -> int:
-    """Return how many cores this process may use: those it may run on, and what a container has.
-
-    A container's share is a quota of time in each period, told in the files of its control group.
-    """
-    may_run_on = getattr(os, "sched_getaffinity", None)
-    cores = len(may_run_on(0)) if may_run_on else os.cpu_count() or 1
-    for names in QUOTAS:
-        with suppress(OSError, ValueError):  # not there; "max", no limit
-            texts = [(groups / name).read_text() for name in names.split()]
-            quota, period = map(int, " ".join(texts).split())
-            if quota > 0 and period > 0:
-                cores = min(cores, -(-quota // period))
-    return max(1, cores)
 
 
 class Local:

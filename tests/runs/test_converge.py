@@ -1,6 +1,8 @@
 """``rodsim converge``: rows against truth of their own, the report, what interrupts it."""
 
 import csv
+from concurrent.futures import Future
+from concurrent.futures.process import BrokenProcessPool
 
 import numpy as np
 import pytest
@@ -9,7 +11,7 @@ from scenes import CONFIGS, final_state, load
 
 from rodsim.analysis.difference import position_errors, triad_angle
 from rodsim.cli import main
-from rodsim.convergence import rows
+from rodsim.convergence import rows, side_by_side
 from rodsim.convergence.report import fitted_order, text
 from rodsim.convergence.study import Study
 from rodsim.errors import UsageError
@@ -159,10 +161,10 @@ def test_earlier_reports_are_renamed(here):
 def test_interrupted_it_keeps_what_it_has(here, monkeypatch):
     plain = Study._outcome
 
-    def interrupted(self, row, repeats, **options):
+    def interrupted(self, row, **options):
         if row.axis == "epsilon":
             raise KeyboardInterrupt
-        return plain(self, row, repeats, **options)
+        return plain(self, row, **options)
 
     monkeypatch.setattr(Study, "_outcome", interrupted)
     done = call(*COMMAND, "-o", "report")
@@ -200,3 +202,92 @@ def test_the_twin_in_space_has_the_points_of_the_case(in_space):
     section = in_space[0].sections[0]
     assert 0.0 < section.rounding.position < 1e-9
     assert not section.amplified
+
+
+FEW = ("rods.rod.shape.points=9", "time.end=1e-4", "time.tolerance=1e-4")
+
+
+def numbers(results):
+    return [(r.row.value, r.outcome.evaluations, vars(r.errors)) for _, r in results if r.errors]
+
+
+@pytest.mark.compiled
+def test_rows_side_by_side_are_those_one_after_another(monkeypatch):
+    _, alone = study("tolerance", "epsilon", overrides=FEW)
+    monkeypatch.setattr(side_by_side, "WORTHWHILE", 0.0)
+    monkeypatch.setattr(side_by_side, "usable_cores", lambda: 2)
+    heard = Heard()
+    made, beside = study("tolerance", "epsilon", overrides=FEW, progress=heard)
+    assert made.side_by_side == 2
+    assert numbers(beside) == numbers(alone)
+    assert heard.fractions == sorted(heard.fractions)
+    assert made._runs._pool
+    assert "on 1 of the cores, 2 rows at once" in text(made)
+
+
+class Heard:
+    """A display of the progress."""
+
+    def __init__(self):
+        self.fractions = []
+
+    def update(self, fraction, note):
+        self.fractions.append(fraction)
+
+
+def test_a_run_that_several_rows_ask_for_is_made_once(monkeypatch):
+    """The case's own points and epsilon at 1e-6 are a row of each."""
+    made = []
+    plain = side_by_side.attempt
+
+    def attempt(case, threads, repeats, nudged, progress):
+        points, tolerance = case.rods["rod"].shape.points, case.time.tolerance
+        made.append((tolerance, points, case.fluid.epsilon, nudged, repeats))
+        return plain(case, threads, repeats, nudged, progress)
+
+    monkeypatch.setattr(side_by_side, "attempt", attempt)
+    _, results = study("tolerance", "points", "epsilon", overrides=FEW)
+    assert len(set(made)) == len(made)
+    at = {(r.row.axis, r.row.value): r.outcome for _, r in results}
+    assert at["tolerance", 1e-6] is at["points", 9]
+    repeats = {f"{run[0]:.0e}": run[-1] for run in made if run[1] == 9}
+    assert repeats == dict.fromkeys(repeats, 3) | {"1e-07": 1, "1e-08": 1}
+    assert at["points", 9].best == min(at["points", 9].seconds)
+    # 9 tolerances, the reference and its check, 3 more levels of points, 4 of epsilon, 2 twins
+    assert len(made) == 9 + 2 + 3 + 4 + 2
+
+
+def test_a_process_that_is_killed_is_told_in_its_row(monkeypatch):
+    broken = Future()
+    broken.set_exception(BrokenProcessPool())
+    monkeypatch.setattr(side_by_side, "WORTHWHILE", 0.0)
+    monkeypatch.setattr(side_by_side, "usable_cores", lambda: 2)
+    monkeypatch.setattr(side_by_side.Runs, "_start", lambda self: None)
+    runs = side_by_side.Runs(None)
+    for k in range(2):
+        runs.ask("", load("open_rod", *FEW, f"time.tolerance=1e-{k + 3}"), 100.0)
+    runs._pool, runs._futures = True, {id(run): broken for run in runs._asked.values()}
+    assert "was killed" in runs.outcome(load("open_rod", *FEW, "time.tolerance=1e-3"))
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "numbers"),
+    [
+        (0.13, 2.4, ["0.2", "0.5", "1", "2"]),
+        (3e-7, 3e-5, ["$5\\times10^{-7}$", "$10^{-6}$", "$2\\times10^{-6}$", "$5\\times10^{-6}$",
+                      "$10^{-5}$", "$2\\times10^{-5}$"]),
+        (3e-4, 2e5, ["0.001", "0.01", "0.1", "1", "10", "100", "1000", "10000", "$10^{5}$"]),
+    ],
+)  # fmt: skip
+def test_both_sides_of_the_picture_have_numbers_that_can_be_read(low, high, numbers):
+    pytest.importorskip("matplotlib")
+    from rodsim.plotting import style
+    from rodsim.plotting.convergence import _readable
+
+    axis = style.new_figure(5, 4).subplots()
+    axis.loglog([low, high], [low, high])
+    axis.set_xlim(low, high)
+    _readable(axis.xaxis, low, high)
+    ticks = zip(axis.get_xticks(), axis.xaxis.get_major_formatter().format_ticks(axis.get_xticks()),
+                strict=True)  # fmt: skip
+    assert [text for tick, text in ticks if low <= tick <= high] == numbers

@@ -12,8 +12,9 @@ from types import SimpleNamespace
 import pytest
 
 from rodsim.commands import serve
+from rodsim.processes import usable_cores
 from rodsim.sweep import local, workers
-from rodsim.sweep.local import Local, share, usable_cores
+from rodsim.sweep.local import Local, share
 from rodsim.sweep.schedule import ATTEMPTS, Sweep
 
 SWEEP = "the sweep of these tests"
