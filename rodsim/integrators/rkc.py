@@ -17,7 +17,6 @@ from rodsim.errors import StepFailure
 from rodsim.integrators.defect import Defect
 from rodsim.integrators.fastest_rate import FastestRate
 from rodsim.integrators.step import Step
-from rodsim.scene.loop import to_increments
 from rodsim.scene.state import State
 from rodsim.scene.system import RodSystem
 
@@ -88,7 +87,7 @@ def error_constant(s: int) -> float:
 
 
 class RKC:
-    """Adaptive RKC. ``tolerance`` bounds the local error of a step, in ``RodSystem.size_of``.
+    """Adaptive RKC. ``tolerance`` bounds the local error of a step, in ``RodSystem.norm``.
     ``max_size`` : no step is longer than this.
     """
 
@@ -107,6 +106,7 @@ class RKC:
         self.accepted = self.rejected = self.max_stages = 0
         self.fastest_rate = math.nan
         self._fastest = fastest or FastestRate(system)
+        self._driven = system.scene.parts.driven
         self._size = None
         self._rate = None  # velocities at the end of the last step
         self._previous = None  # (step size, error) of the last accepted and corrected step
@@ -161,13 +161,12 @@ class RKC:
         """Return (increment, rate at its end, velocities at its end, scaled error) of a trial."""
         s = stages_for(size, self.fastest_rate)
         self.max_stages = max(self.max_stages, s)
-        table, c, n = coefficients(s), error_constant(s), self.system.rod_size
+        table, c = coefficients(s), error_constant(s)
         g = self._defect.correction(size, c)
         shift = self.system.zeros() if g is None else g
         y, velocities = self._run_stages(state, table, size, f0, shift)
-        f1 = velocities.copy()
-        to_increments(y[:n], f1[:n])
-        return y, f1, velocities, self._error(size, c, y, f0, f1, g)
+        f1, left = self._defect.remaining(size, c, y, velocities, f0, g, self.system.norm)
+        return y, f1, velocities, left / self.tolerance
 
     def _run_stages(self, state, table, size, f0, g):
         """Return the increment of a step, g added to all rates, and the velocities at its end."""
@@ -195,10 +194,6 @@ class RKC:
             if not self._size > 1e-13 * end:
                 raise StepFailure(f"no step is accepted, down to a size of {self._size:.2g}", state)
             self._estimate_rate(state, f0)
-
-    def _error(self, size, c, y, f0, f1, g):
-        """Return the local error that the correction has left, over the tolerance."""
-        return self.system.size_of(self._defect.remaining(size, c, y, f0, f1, g)) / self.tolerance
 
     def _grow(self, size, error):
         """Choose the next size by the filter H211b from the last two sizes and errors.
@@ -230,6 +225,8 @@ class RKC:
 
         A step over whole periods of a wave would see the same rate at both ends and find no error.
         """
+        if not self._driven:
+            return size
         travel = self.system.scene.parts.travel
         while (far := travel(state.time, size)) > MOST_TRAVEL:
             size *= max(0.1, 0.9 * MOST_TRAVEL / far)
