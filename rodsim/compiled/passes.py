@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from rodsim.compiled.flags import INTS, VEC, kernel
+from rodsim.compiled.flags import INTS, VEC, kernel, unsigned
+from rodsim.compiled.rotations import rotation_vector_rate
 
 
 @kernel(f"void(float64, {VEC}, float64, {VEC}, {VEC})")
@@ -14,20 +15,8 @@ def weighted_sum(a, x, b, y, out):
         out[i] = a * x[i] + b * y[i]
 
 
-@kernel(f"void(float64, float64, float64, {VEC}, {VEC}, {VEC}, {VEC}, {VEC}, {VEC})")
-def defect(size, c, memory, y, f0, f1, g, third, error):
-    """Write y''' and the error left of each number, see ``Defect.remaining``."""
-    h3 = size * size * size
-    scale = 1.0 / (h3 * (1.0 / 12.0 + memory * c))
-    for i in range(np.uint64(y.size)):
-        rest = 0.5 * size * (f0[i] + f1[i]) - y[i] + memory * size * g[i]
-        third[i] = scale * rest
-    for i in range(np.uint64(y.size)):
-        error[i] = c * h3 * third[i] - size * g[i]
-
-
-@kernel(f"float64({VEC}, {VEC}, {INTS}, {INTS})")
-def largest_rms(values, weights, first, count):
+@unsigned
+def _largest_rms(values, weights, first, count):
     """Return the largest weighted root mean square of a rod's numbers, or of all tracers'.
 
     values : as increments, six rows of all N nodes, then three of the P tracers. NaN if one is.
@@ -42,14 +31,37 @@ def largest_rms(values, weights, first, count):
             for k in range(c * n + first[r], c * n + first[r] + count[r]):
                 total += (weights[k] * values[k]) ** 2
         rms = math.sqrt(total / (6 * count[r]))
-        largest = rms if not rms <= largest else largest
+        largest = rms if rms > largest or rms != rms else largest
     total = 0.0
     for i in range(6 * n, weights.size):
         total += (weights[i] * values[i]) ** 2
     if weights.size > 6 * n:
         rms = math.sqrt(total / (weights.size - 6 * n))
-        largest = rms if not rms <= largest else largest
+        largest = rms if rms > largest or rms != rms else largest
     return largest
+
+
+@kernel(
+    f"float64(float64, float64, float64, {VEC}, {VEC}, {VEC}, {VEC}, {VEC}, {INTS}, {INTS}, "
+    f"{VEC}, {VEC}, {VEC})"
+)
+def remaining(size, c, memory, y, velocities, f0, g, weights, first, count, f1, third, error):
+    """Return how large the error is that a trial step leaves, see ``Defect.remaining``.
+
+    Writes the rates at its end, y''' and the error of each number.
+    """
+    h3 = size * size * size
+    scale = 1.0 / (h3 * (1.0 / 12.0 + memory * c))
+    n = count.sum()
+    for i in range(np.uint64(y.size)):
+        f1[i] = velocities[i]
+    rotation_vector_rate(y[3 * n : 6 * n].reshape(3, n), f1[3 * n : 6 * n].reshape(3, n))
+    for i in range(np.uint64(y.size)):
+        rest = 0.5 * size * (f0[i] + f1[i]) - y[i] + memory * size * g[i]
+        third[i] = scale * rest
+    for i in range(np.uint64(y.size)):
+        error[i] = c * h3 * third[i] - size * g[i]
+    return _largest_rms(error, weights, first, count)
 
 
 @kernel(f"void(float64, {VEC}, {VEC}, {VEC})")

@@ -16,7 +16,7 @@ strongly disturbed rod relaxes, and the error control then rejects the step.
 
 import numpy as np
 
-from rodsim.compiled.passes import defect, weighted_sum
+from rodsim.compiled.passes import remaining, weighted_sum
 
 MEMORY = 0.5  # 0: unstable where steps grow by a quarter; 1: more errors of stiff modes, and lag
 TREND = 0.3  # share of the change of y''' that is carried on; 0.5 can be unstable
@@ -47,17 +47,18 @@ class Defect:
         weighted_sum(factor * (1.0 + trend), third, -factor * trend, oldest, g)
         return g
 
-    def remaining(self, size, c, y, f0, f1, g) -> np.ndarray:
-        """Return the error left in each number of a trial step, C h^3 y''' - h g.
+    def remaining(self, size, c, y, velocities, f0, g, norm) -> tuple[np.ndarray, float]:
+        """Return the rates f_1 at the end of a trial step, and how large the error is that it left.
 
+        The error of each number is C h^3 y''' - h g, and
         h^3 y''' = [h (f_0 + f_1)/2 - y + m h g]/(1/12 + m C), m = MEMORY, for the increment y
-        with g in it; without g it is the same with m = 1, g = 0.
+        with g in it; without g it is the same with m = 1, g = 0. norm : ``RodSystem.norm``.
         """
         memory, g = (1.0, np.zeros_like(y)) if g is None else (MEMORY, g)
-        third, error = np.empty((2, y.size))
-        defect(size, c, memory, y, f0, f1, g, third, error)
+        f1, third, error = np.empty((3, y.size))
+        left = remaining(size, c, memory, y, velocities, f0, g, *norm, f1, third, error)
         self._trial = third, size
-        return error
+        return f1, left
 
     def accept(self) -> None:
         """Keep the step under trial."""

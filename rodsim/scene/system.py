@@ -10,7 +10,6 @@ from time import perf_counter
 import numpy as np
 
 from rodsim.compiled.parts import PLACE, TRACERS
-from rodsim.compiled.passes import largest_rms
 from rodsim.compiled.rotations import displace
 from rodsim.forces.elasticity import first_half_turn
 from rodsim.scene.calls import Calls
@@ -65,13 +64,14 @@ class RodSystem:
         """Where the ledger lies in y."""
         return slice(self._tracers_end, self.size)
 
-    def size_of(self, change: np.ndarray) -> float:
-        """Return how large a change of increments is: the largest root mean square of its parts.
+    @property
+    def norm(self) -> tuple[np.ndarray, ...]:
+        """What the size of a change of increments is taken with: the largest of its parts counts.
 
-        Parts are each rod, positions over its own length and angles in radians, each body and all
-        tracers, over the length of the longest rod. The ledger does not count.
+        Of each rod the root mean square, positions over its own length and angles in radians, of
+        each body and of all tracers, over the length of the longest rod. The ledger does not count.
         """
-        return largest_rms(change, self.weights, *self._groups)
+        return self.weights, *self._groups
 
     def guarded(self, increment: np.ndarray) -> float:
         """Return how much a step takes of what the parts let it do; 0 where none asks for that."""
@@ -146,9 +146,11 @@ class RodSystem:
 
     def state_at(self, base: State, time: float, y: np.ndarray) -> State:
         """Return the state with increments ``y`` from ``base``."""
-        end = tuple(np.empty_like(array) for array in base.geometry)
-        displace(base.geometry, y[: self._tracers_end], end)
-        state = State(time, *end, base.work + y[self._tracers_end :])
+        start = base.geometry
+        end = np.empty_like(start[0]), np.empty_like(start[1]), np.empty_like(start[2])
+        displace(start, y[: self._tracers_end], end)
+        work = base.work + y[self._tracers_end :] if base.work.size else base.work
+        state = State(time, *end, work)
         if self._placing:
             _, loads, _ = self._work
             self._placing.add(state, loads, loads, state.tracer)
