@@ -40,8 +40,9 @@ class Gauge:
 class Guard:
     """What a part asks of every step.
 
-    share : called with the displacements (3, N) of a step, returns how much it takes of what a step
-    may do. Beyond 1 an adaptive method makes the step smaller, a run of fixed steps stops.
+    share : called with the displacements and the rotation vectors (3, N) of a step, returns how
+    much it takes of what a step may do. Beyond 1 an adaptive method makes the step smaller, a run
+    of fixed steps stops.
     beyond : what a share beyond 1 is, in words.
     breach : called with the state at the end of a step, returns what makes it meaningless, the
     usual cause with what to do, and the change of the case for it, or None.
@@ -58,11 +59,14 @@ class Apart:
 
     diameter : distance of centrelines at which they touch. excluded (R,) : how many segments apart
     points of a rod are still neighbours. itself : whether it keeps a rod from itself too.
+    beside : of scenes with bodies, called with a state: twice the smallest distance of points and
+    bodies from surfaces, as far as from their images there.
     """
 
     diameter: float
     excluded: np.ndarray
     itself: bool
+    beside: Callable | None = None
 
 
 @dataclass(frozen=True)
