@@ -82,6 +82,7 @@ class Statics:
     (n, 3, 3) of positions alone, or (n, 6, 6) of positions and rotation vectors.
     holds : degrees of freedom that it keeps where they are, c N + k for component c (x, y, z, then
     three of the rotation vector) of node k.
+    carries : ends of rods that free bodies hold: (node of the body, node, whether clamped).
     move : the farthest that a point may move in one step, length.
     refused : why states at rest cannot be looked for with it, if they cannot.
     """
@@ -89,6 +90,7 @@ class Statics:
     exact: Kernel | str | None = None
     stiffness: Callable | None = None
     holds: tuple[int, ...] = ()
+    carries: tuple[tuple[int, int, bool], ...] = ()
     move: float = math.inf
     refused: str = ""
 
