@@ -220,20 +220,39 @@ def _build(case, scene) -> list[Part]:
 
 
 def _statics(blocks, scene) -> Statics:
-    """Return the degrees of freedom c N + k that held ends lose: places, and of clamped ones turns.
+    """Return the degrees of freedom c N + k that something holds, and what free bodies carry.
 
-    States at rest are not looked for with bodies, motors and hooks.
+    Held are the places of ends, of clamped ones the turns, and fixed bodies.
     """
     from rodsim.blocks import fields as f
 
-    members = [member for block in blocks for member in block.members]
-    if scene.bodies or any(m.joint.kind not in (f.CLAMPED, f.BALL) for m in members):
-        return Statics(refused="rest knows held ends, not bodies, motors and hooks: leave them out")
-    n, held = scene.rods.points, []
-    for member in members:
-        components = 6 if member.joint.kind == f.CLAMPED else 3
-        held += [c * n + member.node for c in range(components)]
-    return Statics(holds=tuple(held))
+    if reason := _no_rest(blocks):
+        return Statics(refused=reason)
+    n, held, carried = scene.nodes, [], []
+    for block in blocks:
+        if not block.free and block.node >= 0:
+            held += [c * n + block.node for c in range(6)]
+        for member in block.members:
+            clamped = member.joint.kind == f.CLAMPED
+            held += [c * n + member.node for c in range(6 if clamped else 3)]
+            if block.free:
+                carried.append((block.node, member.node, clamped))
+    return Statics(holds=tuple(held), carries=tuple(carried))
+
+
+def _no_rest(blocks) -> str:
+    """Return why states at rest cannot be looked for, or nothing."""
+    from rodsim.blocks import fields as f
+
+    for block in blocks:
+        if block.node >= 0 and block.motion >= 0:
+            return f"body '{block.name}' has a given motion: at rest it is free or fixed"
+        for member in block.members:
+            if member.joint.motor != f.STILL:
+                return f"the motor of {member.name} drives for ever: leave it out"
+            if member.joint.kind == f.HOOKED:
+                return f"rest does not know hooks: leave out that of {member.name}"
+    return ""
 
 
 def _check_finite(row, case):

@@ -13,6 +13,7 @@ def describe_contact(scene, contact, length_unit: str) -> str:
     apart, spacing = scene.parts.apart, scene.rods.spacing.max()
     reach = ", ".join(map(str, sorted(set(apart.excluded.tolist()))))
     who = "all rods and themselves" if apart.itself else "different rods"
+    who += " and bodies" if scene.bodies else ""
     epsilons, spacings = apart.diameter / scene.epsilon, apart.diameter / spacing
     return (
         f"contact: {who}, diameter {apart.diameter:.6g} {length_unit} "

@@ -40,8 +40,9 @@ class Gauge:
 class Guard:
     """What a part asks of every step.
 
-    share : called with the displacements (3, N) of a step, returns how much it takes of what a step
-    may do. Beyond 1 an adaptive method makes the step smaller, a run of fixed steps stops.
+    share : called with the displacements and the rotation vectors (3, N) of a step, returns how
+    much it takes of what a step may do. Beyond 1 an adaptive method makes the step smaller, a run
+    of fixed steps stops.
     beyond : what a share beyond 1 is, in words.
     breach : called with the state at the end of a step, returns what makes it meaningless, the
     usual cause with what to do, and the change of the case for it, or None.
@@ -58,11 +59,14 @@ class Apart:
 
     diameter : distance of centrelines at which they touch. excluded (R,) : how many segments apart
     points of a rod are still neighbours. itself : whether it keeps a rod from itself too.
+    beside : of scenes with bodies, called with a state: twice the smallest distance of points and
+    bodies from surfaces, as far as from their images there.
     """
 
     diameter: float
     excluded: np.ndarray
     itself: bool
+    beside: Callable | None = None
 
 
 @dataclass(frozen=True)
@@ -78,6 +82,7 @@ class Statics:
     (n, 3, 3) of positions alone, or (n, 6, 6) of positions and rotation vectors.
     holds : degrees of freedom that it keeps where they are, c N + k for component c (x, y, z, then
     three of the rotation vector) of node k.
+    carries : ends of rods that free bodies hold: (node of the body, node, whether clamped).
     move : the farthest that a point may move in one step, length.
     refused : why states at rest cannot be looked for with it, if they cannot.
     """
@@ -85,6 +90,7 @@ class Statics:
     exact: Kernel | str | None = None
     stiffness: Callable | None = None
     holds: tuple[int, ...] = ()
+    carries: tuple[tuple[int, int, bool], ...] = ()
     move: float = math.inf
     refused: str = ""
 

@@ -1,15 +1,16 @@
-"""Contact: rods push each other, themselves and a wall apart before they pass through.
+"""Contact: rods push each other, themselves, bodies and a wall apart before they pass through.
 
 Its words in a case file and its numbers; the formulas are in :mod:`rodsim.forces.repulsion`. They
 touch at the distance d of their centrelines. Points of one rod ignore each other within an arc
 length, by default pi d/2: a rod bent no tighter than its own thickness does not touch itself there.
-No friction, no lubrication, no state. Bodies, where a scene has any, are one more part beside the
-pairs and the wall: a surface that points are held d/2 away from.
+No friction, no lubrication, no state. Bodies, where a scene has any, are more parts beside the
+pairs and the wall: surfaces that points are held d/2 away from (:mod:`rodsim.forces.bodies`).
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Annotated, Literal
 
 import numpy as np
@@ -18,6 +19,7 @@ from pydantic import Discriminator, Field, Tag
 from rodsim.case.fields import Model, Positive, number_tag, quantity
 from rodsim.compiled.parts import FORCE, Apart, Part, Statics
 from rodsim.errors import CaseError
+from rodsim.forces.bodies import leaky, surfaces_of
 from rodsim.forces.near import repulsion_stiffness, segments_within
 from rodsim.forces.overlap import at_start, guard
 from rodsim.forces.places import end_weights
@@ -37,7 +39,7 @@ class Epsilons(Model):
 
 
 class Contact(Model):
-    """Rods push each other, themselves and the wall apart; {} takes every default."""
+    """Rods push each other, themselves, bodies and the wall apart; {} takes every default."""
 
     diameter: (
         Annotated[
@@ -79,7 +81,8 @@ def _apart(case, scene) -> Apart:
     if reach < diameter:
         reason = f"must be at least the diameter, {diameter:.6g}: neighbours on a straight rod "
         raise CaseError([case.source.problem(EXCLUSION, reason + "would push each other")])
-    if contact.pairs == "between" and len(rods) == 1 and scene.wall is None:
+    alone = len(rods) == 1 and scene.wall is None and not scene.bodies
+    if contact.pairs == "between" and alone:
         reason = "there is one rod only, so nothing would touch: leave it out"
         raise CaseError([case.source.problem(("contact", "pairs"), reason)])
     return Apart(diameter, segments_within(reach, rods), contact.pairs == "all")
@@ -106,19 +109,28 @@ def _build(case, scene) -> list[Part]:
     strengths, ds = _strengths(case, scene, diameter), np.concatenate([*map(end_weights, rods)])
     ignored = apart.excluded if apart.itself else rods.count
     fixed = np.concatenate([[diameter], strengths, ignored, ds])
-    on_wall = None
-    if scene.wall is not None:
-        on_wall = np.array([scene.wall, diameter, *(np.repeat(strengths, rods.count) * ds)])
-    close = at_start(case, scene, apart)
+    weights = np.repeat(strengths, rods.count) * ds
+    on_wall = None if scene.wall is None else np.array([scene.wall, diameter, *weights])
+    surfaces, shown = None, {}
+    if scene.bodies:
+        surfaces = surfaces_of(case, scene, diameter, weights, strengths.max(), apart.excluded)
+        shown = {"labels": {"contact_energy": surfaces.labels}}
+        coarse = [*coarse, *leaky(case, scene)]
+        apart = replace(apart, beside=lambda state: 2.0 * surfaces.closest(state)[0])
+    close = at_start(case, scene, apart, surfaces)
+    rows = len(rods) + len(scene.bodies)
     pairs = Part(
-        "contact", FORCE, PAIRS, fixed=fixed, observe=_observer(fixed, on_wall), apart=apart,
-        series=(("contact_energy", (len(rods),), (1, 2, -2)),), guard=guard(case, scene, fixed),
+        "contact", FORCE, PAIRS, fixed=fixed, observe=_observer(fixed, on_wall, surfaces),
+        series=(("contact_energy", (rows,), (1, 2, -2)),), apart=apart,
+        guard=guard(case, scene, fixed, surfaces), **shown,
         warnings=(*coarse, *_too_short(case, rods, apart), *close),
         statics=Statics(stiffness=_stiffness(fixed), move=SHARE_AT_REST * diameter),
     )  # fmt: skip
-    if on_wall is None:
-        return [pairs]
-    return [pairs, Part("contact_wall", FORCE, WALL, fixed=on_wall, external=True, potential=True)]
+    parts = [pairs]
+    if on_wall is not None:
+        outside = {"external": True, "potential": True}
+        parts.append(Part("contact_wall", FORCE, WALL, fixed=on_wall, **outside))
+    return [*parts, *(surfaces.parts if surfaces else ())]
 
 
 def _stiffness(fixed):
@@ -157,15 +169,18 @@ def _too_short(case, rods, apart):
         yield case.source.problem(("contact",), reason)
 
 
-def _observer(fixed, on_wall):
+def _observer(fixed, on_wall, surfaces):
     def observe(state, row, scene):
-        """Return the energy of each rod's contacts, half of a pair to either rod."""
+        """Return the energy of each rod's contacts, and each body's, half of a pair to either."""
         from rodsim.forces.repulsion import pair_energies, wall_energies
 
         energies, rods = np.zeros(len(scene.rods)), scene.rods.tables
         pair_energies(fixed, rods, state.position, energies)
         if on_wall is not None:
             energies += wall_energies(on_wall, rods, state.position)
+        if surfaces is not None:
+            bodies = np.zeros(len(scene.bodies))
+            energies = np.concatenate([energies, bodies]) + surfaces.meet(state)[0]
         return {"contact_energy": energies}
 
     return observe
@@ -176,5 +191,5 @@ KIND = Kind(
     word="contact",
     where="Case",
     words=Contact,
-    about="rods push each other, themselves and the wall apart; left out: no contact",
+    about="rods push each other, themselves, bodies and the wall apart; left out: no contact",
 )

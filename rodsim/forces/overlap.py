@@ -1,4 +1,4 @@
-"""Rods in contact must not get into each other: checked at the start and after every step."""
+"""What is in contact must not get into each other: checked at the start and after every step."""
 
 from __future__ import annotations
 
@@ -13,14 +13,22 @@ STEP = 0.25  # diameters that a point may move in a step: two then come nearer b
 # what all move together
 
 
-def at_start(case, scene, apart: Apart) -> list[Problem]:
-    """Return warnings of rods that start in contact; CaseError where they overlap too much."""
+def at_start(case, scene, apart: Apart, surfaces=None) -> list[Problem]:
+    """Return warnings of what starts in contact; CaseError where it overlaps too much.
+
+    surfaces : those of bodies, :class:`rodsim.forces.bodies.Surfaces`, or None.
+    """
     errors, warnings = [], []
-    for distance, name, words in filter(None, (_closest(scene, apart), _lowest(scene))):
-        share, path = distance / apart.diameter, ("rods", name, "shape")
+    found = _closest(scene, apart), _lowest(scene), _on_surface(scene, surfaces)
+    for distance, name, words in filter(None, found):
+        share = distance / apart.diameter
+        path = "rods" if name in scene.rods.names else "bodies", name, "shape"
         reason = f"{words}, {share:.2g} contact diameters"
         if share < PRESSED:
-            reason += ": rods cannot start inside each other; move them, or make contact.diameter "
+            who = "bodies and rods" if surfaces else "rods"
+            reason += (
+                f": {who} cannot start inside each other; move them, or make contact.diameter "
+            )
             reason += f"smaller than {distance / PRESSED:.3g}"
             errors.append(case.source.problem(path, reason))
         elif share < 1.0:
@@ -54,17 +62,28 @@ def _lowest(scene):
     return 2.0 * height[k], name, f"point {i} is {2.0 * height[k]:.4g} from its image in the wall"
 
 
-def guard(case, scene, fixed: np.ndarray) -> Guard:
+def _on_surface(scene, surfaces):
+    """Return the same of what is nearest to a surface of a body, or of a body to the wall."""
+    if surfaces is None:
+        return None
+    distance, name, whose, what = surfaces.closest(scene.initial)
+    return 2.0 * distance, name, f"{what} {2.0 * distance:.4g} from its image in {whose}"
+
+
+def guard(case, scene, fixed: np.ndarray, surfaces=None) -> Guard:
     """Return what contact asks of a step; ``fixed``: the numbers of the pairs."""
     diameter, rods = fixed[0], scene.rods
     unit = case.units.length
 
     free = slice(None) if scene.wall is None else slice(2)  # where all may move together
 
-    def share(shift):
+    def share(shift, turn):
         moved = shift.copy()
         moved[free] -= moved[free].mean(axis=1, keepdims=True)
-        return float(np.sqrt((moved * moved).sum(axis=0).max()) / (STEP * diameter))
+        if surfaces is None:
+            return float(np.sqrt((moved * moved).sum(axis=0).max()) / (STEP * diameter))
+        farthest = np.linalg.norm(moved, axis=0) + surfaces.turning(turn)
+        return float(farthest.max() / (STEP * diameter))
 
     def breach(state):
         from rodsim.forces.repulsion import closest_within
@@ -77,6 +96,8 @@ def guard(case, scene, fixed: np.ndarray) -> Guard:
         if scene.wall is not None and 2.0 * (z.min() - scene.wall) < limit:
             name, k = rods.locate(int(z.argmin()))
             return _remedy(case, f"rod '{name}' is pressed into the wall at point {k}")
+        if surfaces is not None and (what := surfaces.pressed(state, 0.5 * limit)):
+            return _remedy(case, what)
         return None
 
     most = STEP * diameter

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rodsim.rest.forces import Forces, moved
+from rodsim.rest.forces import Forces
 from rodsim.scene.state import State
 
 TURN = 0.3  # rad, the largest rotation of a triad in one step
@@ -94,7 +94,7 @@ def _try(forces, state, loads, most, system, tau, scales):
     used = _used(change, scales)
     if not used <= 1.0:
         return None, tau * min(0.7, max(0.1, 0.7 / used)) if used < np.inf else 0.1 * tau
-    after = moved(state, change)
+    after = forces.moved(state, change)
     energy, new = forces.energy(after), _free(forces, forces.loads(after))
     if not (energy - forces.work(state, after, change) <= most and np.isfinite(new).all()):
         return None, 0.3 * tau

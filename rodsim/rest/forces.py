@@ -8,6 +8,7 @@ import numpy as np
 
 from rodsim.compiled.parts import FORCE, PartList
 from rodsim.compiled.rotations import displace
+from rodsim.rest.carried import Carried
 from rodsim.rest.stiffness import Differences, assembled
 from rodsim.scene.evaluation import Evaluation
 from rodsim.scene.state import Scene, State
@@ -35,6 +36,7 @@ class Forces:
         parts = exact_parts(scene) if exact else scene.parts.of(FORCE)
         self.scene, self.exact, self.parts = scene, exact, parts
         self.free = free_numbers(scene)
+        self.carried = Carried(scene, self.free)
         self._all = Evaluation(scene, parts)
         along = PartList(part for part in parts if part.statics.stiffness is None)
         self._differences = Differences(scene, along)
@@ -54,17 +56,21 @@ class Forces:
         uneven = abs(matrix - matrix.T).max()
         if uneven > UNEVEN * abs(matrix).max():
             return False
-        change = np.random.default_rng(1).normal(size=(6, self.scene.rods.points))
+        change = np.random.default_rng(1).normal(size=(6, self.scene.nodes))
         change[:3] *= SMALL * self.scene.rods.spacing.min()
         change[3:] *= SMALL
         change.flat[np.setdiff1d(np.arange(change.size), self.free)] = 0.0
-        ends = (self.loads(moved(state, side * change)).ravel() for side in (0.5, -0.5))
+        ends = (self.loads(self.moved(state, side * change)).ravel() for side in (0.5, -0.5))
         found, expected = np.subtract(*ends)[self.free], -(matrix @ change.ravel()[self.free])
         return bool(abs(found - expected).max() <= ALIKE * abs(expected).max())
 
     def loads(self, state: State) -> np.ndarray:
-        """Return g and m of all nodes, (6, N)."""
-        return _evaluated(self._all, state)
+        """Return g and m of all nodes, (6, N); what bodies hold acts on them too."""
+        return self.carried.passed_on(_evaluated(self._all, state), state)
+
+    def moved(self, state: State, change: np.ndarray) -> State:
+        """Return a state after a change (6, N), with held ends where their bodies are."""
+        return self.carried.placed(moved(state, change))
 
     def energy(self, state: State) -> float:
         """Return the sum of the energies that forces store."""
@@ -79,19 +85,20 @@ class Forces:
         if self._working is None:
             return 0.0
         loads = _evaluated(self._working, before) + _evaluated(self._working, after)
-        return 0.5 * float((loads * change).sum())
+        return 0.5 * float((loads * self.carried.whole(change, before, after)).sum())
 
     def stiffness(self, state: State):
         """Return K = -d(loads)/dz of the free degrees of freedom, a sparse matrix."""
         blocks = [self._differences(state)]
         blocks += [p.statics.stiffness(state, p.row, self.scene) for p in self._coupling]
-        return assembled(blocks, self.scene.rods.points)[self.free][:, self.free]
+        matrix = assembled(blocks, self.scene.nodes)
+        after = lambda change: self.loads(self.moved(state, change))  # noqa: E731
+        return self.carried.coupled(matrix, state, after)
 
 
 def free_numbers(scene: Scene) -> np.ndarray:
     """Return the degrees of freedom c N + k that nothing holds: in a plane only y, z, theta_x."""
-    n = scene.rods.points
-    free = np.ones((6, n), dtype=bool)
+    free = np.ones((6, scene.nodes), dtype=bool)
     if scene.planar:
         free[[0, 4, 5]] = False
     free = free.ravel()

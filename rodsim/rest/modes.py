@@ -43,7 +43,7 @@ def modes_of(forces, state, scales, count: int) -> Modes:
     neutral = negative(matrix, zero) - growing
     size = matrix.shape[0]
     values, vectors = _lowest(matrix, min(max(count, growing), size), zero, growing)
-    shapes = np.zeros((len(values), 6 * forces.scene.rods.points))
+    shapes = np.zeros((len(values), 6 * forces.scene.nodes))
     shapes[:, forces.free] = (vectors / root[:, None]).T
     return Modes(growing, neutral, zero, values, _normed(shapes, scales))
 

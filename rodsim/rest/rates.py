@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rodsim.compiled.parts import FLOW
+from rodsim.compiled.parts import FLOW, HOLD, RELEASE
 from rodsim.scene.evaluation import Evaluation
 
 MOST_POINTS = 400  # for dense matrices: a quarter of a minute
@@ -32,16 +32,21 @@ class Rates:
     vectors: np.ndarray | None = None
 
 
-def mobility(scene, state) -> np.ndarray:
-    """Return the velocities (6 N, 6 N) of all nodes for unit loads, one in each column."""
-    n = scene.rods.points
-    flows = Evaluation(scene, scene.parts.of(FLOW))
-    matrix, none = np.empty((6 * n, 6 * n)), np.zeros_like(state.tracer)
-    for column in range(6 * n):
-        loads, velocity = np.zeros((6, n)), np.zeros((6, n))
-        loads.flat[column] = 1.0
+def mobility(scene, state, free: np.ndarray) -> np.ndarray:
+    """Return the velocities of the free degrees of freedom for unit loads, one in each column.
+
+    What holds nodes takes its own loads, so that they stay or go where their bodies go.
+    """
+    flows, none = (
+        Evaluation(scene, scene.parts.of(RELEASE, FLOW, HOLD)),
+        np.zeros_like(state.tracer),
+    )
+    matrix = np.empty((len(free), len(free)))
+    for column, number in enumerate(free):
+        loads, velocity = np.zeros((6, scene.nodes)), np.zeros((6, scene.nodes))
+        loads.flat[number] = 1.0
         flows.add(state, loads, velocity, none)
-        matrix[:, column] = velocity.ravel()
+        matrix[:, column] = velocity.ravel()[free]
     return matrix
 
 

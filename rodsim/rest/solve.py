@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rodsim.rest.descent import SAME, TURN, Descent, Scales, descend
-from rodsim.rest.forces import Forces, moved
+from rodsim.rest.forces import Forces
 from rodsim.rest.modes import modes_of
 from rodsim.scene.state import State
 
@@ -42,8 +42,10 @@ def scales_of(scene, settings=None) -> Scales:
     rods = scene.rods
     bending, length = float(rods.moduli[:2].max()), scene.length_scale
     stiffest, ds = float(rods.moduli[3:].max()), float(rods.spacing.min())
-    drag = np.ones((6, rods.points))
+    drag = np.ones((6, scene.nodes))
     drag[3:] = scene.epsilon**2
+    for body in scene.bodies:
+        drag[3:, body.node] = (body.surface.skin**2).sum(axis=0).max()
     move = min([PATH * length, *(part.statics.move for part in scene.parts)])
     rounding = 20.0 * 1.1e-16 * (stiffest * length**2 / bending) * (length / ds)
     return Scales(
@@ -97,10 +99,15 @@ def _settled(exact, scales, most, saddles, tell):
         now, left = _pushed(exact, now, modes, scales), left + 1
 
 
+def refused_by(scene) -> str:
+    """Return why states at rest cannot be looked for in a scene, or nothing."""
+    return next((part.statics.refused for part in scene.parts if part.statics.refused), "")
+
+
 def _never(forces, state, scales):
     """Return why nothing can come to rest, or nothing: forces on what is free to move on."""
-    n = forces.scene.rods.points
-    if refused := next((p.statics.refused for p in forces.scene.parts if p.statics.refused), ""):
+    n = forces.scene.nodes
+    if refused := refused_by(forces.scene):
         return refused
     stiffness, every = forces.stiffness(state), np.zeros((6 * n, 3))
     for axis in range(3):
@@ -121,6 +128,6 @@ def _pushed(forces, now, modes, scales):
     move = np.sqrt((shape[:3] ** 2).sum(axis=0)).max() / scales.move
     turn = np.sqrt((shape[3:] ** 2).sum(axis=0)).max() / TURN
     shape = PUSH / max(move, turn) * shape
-    sides = [moved(now.state, side * shape) for side in (1.0, -1.0)]
+    sides = [forces.moved(now.state, side * shape) for side in (1.0, -1.0)]
     state = min(sides, key=forces.energy)
     return replace(now, state=state, tau=SLOW / abs(modes.values[0]))

@@ -8,11 +8,11 @@ import numpy as np
 
 from rodsim.errors import UsageError
 from rodsim.rest.descent import GREATEST, SAME, Descent, Scales, descend
-from rodsim.rest.forces import Forces, moved
+from rodsim.rest.forces import Forces
 from rodsim.rest.modes import Modes, modes_of
 from rodsim.rest.output import NUMBER, STIFFNESS, UNKNOWN, write_states
 from rodsim.rest.rates import MOST_POINTS, Rates, mobility, rates_of, shares_of
-from rodsim.rest.solve import STEPS, scales_of
+from rodsim.rest.solve import STEPS, refused_by, scales_of
 from rodsim.rest.start import Start
 from rodsim.scene.state import State
 
@@ -43,6 +43,8 @@ def stability_of(start: Start, count: int, with_rates: bool) -> Stability:
     count : how many of the lowest modes that are not neutral are wanted, those that grow first.
     """
     scene = start.scene
+    if reason := refused_by(scene):
+        raise UsageError(reason)
     scales, exact = scales_of(scene, start.case.rest), Forces(scene)
     residual = _at_rest(scene, scales)
     if with_rates:
@@ -81,7 +83,7 @@ def _not_too_many(points: int) -> None:
 def _at_rest(scene, scales: Scales) -> float:
     """Return the residual of the loads that runs have; raise UsageError where it is too large."""
     forces = Forces(scene, exact=False)
-    loads = np.zeros(6 * scene.rods.points)
+    loads = np.zeros(6 * scene.nodes)
     loads[forces.free] = forces.loads(scene.initial).ravel()[forces.free]
     residual = scales.residual(loads.reshape(6, -1))
     if not residual <= AT_REST * scales.tolerance:
@@ -94,8 +96,7 @@ def _at_rest(scene, scales: Scales) -> float:
 
 def _rates(forces, state):
     free = forces.free
-    moves = mobility(forces.scene, state)[np.ix_(free, free)]
-    return rates_of(forces.stiffness(state), moves)
+    return rates_of(forces.stiffness(state), mobility(forces.scene, state, free))
 
 
 def _without_neutral(modes):
@@ -111,11 +112,11 @@ def write_modes(found: Stability, output, overwrite=False):
     Returns where an older output has gone, or None.
     """
     modes, length = found.modes, found.start.scene.length_scale
-    states, values = [found.state], [0.0]
+    states, values, forces = [found.state], [0.0], Forces(found.start.scene)
     for shape, value in zip(modes.shapes, modes.values, strict=True):
         move, turn = (np.sqrt((part**2).sum(axis=0)).max() for part in (shape[:3], shape[3:]))
         size = 1.0 / max(move / (SHOWN_MOVE * length), turn / SHOWN_TURN)
-        states.append(moved(found.state, size * shape))
+        states.append(forces.moved(found.state, size * shape))
         values.append(float(value))
     frames = len(states)
     series = {

@@ -25,9 +25,10 @@ class Differences:
 
     def __init__(self, scene, parts: PartList):
         self._rods, self._calls = scene.rods, Calls(parts, counted=lambda part: False)
-        n = scene.rods.points
-        self._nearby = np.stack([np.full(n, -1), np.arange(n), np.full(n, -1)])
-        self._groups, self._steps = np.zeros(n, dtype=np.int64), np.full((6, n), ANGLE)
+        n, points = scene.nodes, scene.rods.points
+        number = np.where(np.arange(n) < points, np.arange(n), -1)  # bodies stay
+        self._nearby = np.stack([np.full(n, -1), number, np.full(n, -1)])
+        self._groups, self._steps = np.minimum(number, 0), np.full((6, n), ANGLE)
         for rod in scene.rods:
             number = np.arange(rod.count)
             for row, there in zip((0, 2), _neighbours(number, rod.closed), strict=True):

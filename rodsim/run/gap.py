@@ -29,6 +29,8 @@ class Gap:
         rods = scene.rods
         self._rods = rods.first, rods.count, rods.closed, excluded(scene)
         self._any, self._inside = any_pair_counts(scene), False
+        apart = scene.parts.apart
+        self._beside = apart.beside if apart else None
 
     def measure(self, state) -> dict:
         """Return the observable ``gap`` of a frame, length; nothing where no two points count."""
@@ -45,6 +47,8 @@ class Gap:
         below = distance < self.diameter <= self.smallest
         if below and not self._kept_apart(who, first, second):
             self.notify(self._warning(who(first, second), distance, state.time))
+        if self._beside is not None:
+            distance = min(distance, self._beside(state))
         if distance < self.smallest:
             self.smallest, self.time = distance, state.time
         return {"gap": distance}

@@ -107,7 +107,7 @@ class Watch:
             if breach:
                 what, *remedy = breach
                 self._stop(step.number, step.start, what, None, remedy)
-            if self._fixed and guard.share(self.system.split(step.increment)[0]) > 1.0:
+            if self._fixed and guard.share(*self.system.split(step.increment)[:2]) > 1.0:
                 self._stop(step.number, step.start, guard.beyond, None)
 
     def _below_wall(self, state):

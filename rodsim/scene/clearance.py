@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from rodsim.blocks.distance import distance, local
 from rodsim.blocks.ends import end_node, held_ends
-from rodsim.blocks.surface import SurfacePoints
 from rodsim.forces.places import rod_named
 
 
@@ -33,7 +33,7 @@ def _outside(scene, body, state):
     """
     turn, centre = state.director[:, :, body.node].T, state.position[:, body.node]
     points = state.position[:, : scene.rods.points]
-    outside = distance(body.shape, body.surface, _local(turn, centre, points))
+    outside = distance(body.shape, body.surface, local(turn, centre, points))
     held = [
         end_node(rod_named(scene.rods, name), key.removeprefix("held_"))
         for name, kept in scene.arrays.items()
@@ -62,7 +62,7 @@ def _far(case, scene):
         if end.to == "space" or end.gap:
             continue
         body = next(body for body in scene.bodies if body.name == end.to)
-        place = _local(body.turn, body.centre, scene.arrays[name][f"held_{which}"][:3, None])
+        place = local(body.turn, body.centre, scene.arrays[name][f"held_{which}"][:3, None])
         far = abs(float(distance(body.shape, body.surface, place)[0]))
         if far > scene.epsilon * (1.0 + 1e-9):
             reason = (
@@ -81,7 +81,7 @@ def _apart(case, scene):
         for other in scene.bodies[:i]:
             pairs = (body, other), (other, body)
             depths = (
-                distance(a.shape, a.surface, _local(a.turn, a.centre, _skin(b))) for a, b in pairs
+                distance(a.shape, a.surface, local(a.turn, a.centre, _skin(b))) for a, b in pairs
             )
             if min(float(d.min()) for d in depths) < 0.0:
                 reason = f"overlaps body '{other.name}': move one"
@@ -100,33 +100,3 @@ def _below_wall(case, scene):
 def _skin(body):
     """Return the surface of a body where it starts, (3, n)."""
     return body.centre[:, None] + body.turn @ body.surface.skin
-
-
-def _local(turn, centre, points):
-    """Return points (3, n) in the frame of a body."""
-    return turn.T @ (points - centre[:, None])
-
-
-def distance(shape, surface: SurfacePoints, points: np.ndarray) -> np.ndarray:
-    """Return how far points (3, n), in the frame of a body, are outside its surface; < 0 inside.
-
-    Exact for spheres and spherocylinders, to first order in the distance for spheroids. A surface
-    from a file counts as seen from its centre: as far as the surface point nearest in direction.
-    """
-    x, y, z = points
-    rho = np.hypot(x, y)
-    if shape.kind == "sphere":
-        return np.hypot(rho, z) - shape.radius
-    if shape.kind == "spherocylinder":
-        straight = 0.5 * shape.length - shape.radius
-        return np.hypot(rho, z - np.clip(z, -straight, straight)) - shape.radius
-    if shape.kind == "spheroid":
-        a, b = 0.5 * shape.length, shape.radius
-        level = (rho / b) ** 2 + (z / a) ** 2 - 1.0
-        slope = 2.0 * np.hypot(rho / b**2, z / a**2)
-        return np.where(slope > 0.0, level / np.where(slope > 0.0, slope, 1.0), -min(a, b))
-    skin = surface.skin
-    radius = np.linalg.norm(skin, axis=0)
-    far = np.linalg.norm(points, axis=0)
-    nearest = np.argmax((skin / radius).T @ points, axis=0)
-    return far - radius[nearest]

@@ -44,8 +44,10 @@ def excluded(scene) -> np.ndarray:
 
 
 def any_pair_counts(scene) -> bool:
-    """Tell whether a scene has any two points that are no neighbours, or a wall."""
-    rods = scene.rods
+    """Tell whether a scene has any two points that are no neighbours, or what counts as such."""
+    rods, apart = scene.rods, scene.parts.apart
+    if apart is not None and apart.beside is not None:
+        return True
     farthest = np.where(rods.closed, rods.count // 2, rods.count - 1)
     return scene.wall is not None or len(rods.names) > 1 or bool((farthest > excluded(scene)).any())
 

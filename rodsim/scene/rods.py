@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from rodsim.blocks.ends import ENDS
 from rodsim.case import check_strain_twist, thin
 from rodsim.errors import CaseError, FileError
 from rodsim.scene.curve import build_curve
@@ -123,5 +124,11 @@ def _bind(case, name, rod, built, stored, found):
     found.rods.append((built.position, built.director, built.spacing, built.closed))
     found.entries.append(entries)
     found.moduli.append(along)
-    if arrays:
+    if arrays := {**arrays, **_held(rod, kept)}:
         found.arrays[name] = arrays
+
+
+def _held(rod, kept):
+    """Return where held ends were built in an earlier run: later frames have them elsewhere."""
+    names = {f"held_{which}" for which in ENDS if getattr(rod, which) is not None}
+    return {name: array for name, array in (kept or {}).items() if name in names}

@@ -77,8 +77,7 @@ class RodSystem:
         """Return how much a step takes of what the parts let it do; 0 where none asks for that."""
         if not self._guards:
             return 0.0
-        shift = self.split(increment)[0]
-        return max(guard.share(shift) for guard in self._guards)
+        return max(guard.share(*self.split(increment)[:2]) for guard in self._guards)
 
     def rate(self, t: float, base: State, y: np.ndarray, out: np.ndarray) -> np.ndarray:
         """Write dy/dt at increments ``y`` from ``base`` at time ``t`` into ``out``, return it."""

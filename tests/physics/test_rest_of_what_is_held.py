@@ -40,18 +40,6 @@ def test_euler_buckling_of_a_clamped_column(load, growing):
     assert found.growing == growing
 
 
-def test_bodies_are_refused():
-    case = {
-        "fluid": {"viscosity": 0.3, "epsilon": 0.5},
-        "bodies": {"cell": {"shape": {"kind": "sphere", "radius": 0.7, "points": 20,
-                                      "origin": [0.0, 0.0, -0.7]}}},
-        "rods": {"tail": {"shape": {"kind": "straight", "points": 7, "length": 1.2},
-                          "moduli": MODULI, "start": {"hold": "clamped", "to": "cell"}}},
-        "time": {"end": 2.0},
-    }  # fmt: skip
-    assert "not bodies" in find_rest(build_scene(case_from_mapping(case))).failure
-
-
 def test_stiffness_of_contact_is_that_of_its_loads():
     """Central differences of step 1e-6: errors of h^2 and of rounding/h, both about 1e-10."""
     rod = {"moduli": MODULI, "shape": {"kind": "straight", "points": 9, "length": 2.3}}

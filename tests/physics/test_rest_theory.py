@@ -137,7 +137,7 @@ def straight():
     shape = {"kind": "straight", "points": 76, "spacing": ds}
     scene = build_scene(case_from_mapping(case_of(shape, moduli_of(), [0, 0, 0], 6 * ds)))
     stiffness = Forces(scene).stiffness(scene.initial)
-    rates = rates_of(stiffness, mobility(scene, scene.initial))
+    rates = rates_of(stiffness, mobility(scene, scene.initial, np.arange(6 * 76)))
     return rates, stiffness, ds * np.arange(76)
 
 
@@ -201,5 +201,5 @@ def test_the_fastest_rate_of_a_straight_rod(straight):
 def test_growth_of_michells_ring(points, rate):
     scene = ring(points, [0, 0, 2.0 / R0])
     state = near_state(scene)
-    rates = rates_of(Forces(scene).stiffness(state), mobility(scene, state))
+    rates = rates_of(Forces(scene).stiffness(state), mobility(scene, state, np.arange(6 * points)))
     assert rates.values[:2].real == pytest.approx([rate, rate], rel=1e-4)

@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rodsim.blocks.distance import distance
 from rodsim.case import case_from_mapping
 from rodsim.errors import CaseError
 from rodsim.scene.build import build_scene
-from rodsim.scene.clearance import deepest_point, distance
+from rodsim.scene.clearance import deepest_point
 
 CASE = {
     "fluid": {"viscosity": 0.3, "epsilon": 0.4},
