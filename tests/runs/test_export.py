@@ -197,7 +197,7 @@ def test_an_earlier_file_is_named_and_a_failed_one_leaves_it(output, monkeypatch
 @pytest.mark.parametrize(
     ("arguments", "code", "words"),
     [
-        (("-o", "a.h5"), 2, "a.h5: must end in one of .vtkhdf .csv .npz"),
+        (("-o", "a.h5"), 2, "a.h5: must end in one of .vtkhdf .csv .npz .py"),
         (("-o", "none/a.csv"), 4, "none/a.csv: cannot be written: No such file"),
     ],
 )

@@ -154,12 +154,9 @@ CHOOSE = """
 const list = document.getElementById("colour");
 list.value = arguments[0];
 list.dispatchEvent(new Event("change"));"""
-DRAWN = """
+SETTLED = """
 const done = arguments[0];
-requestAnimationFrame(() => requestAnimationFrame(() => {
-  const canvas = document.querySelector("#canvasTarget canvas");
-  K3DInstance.then((k3d) => { k3d.render(); done(canvas.toDataURL("image/png")); });
-}));"""
+requestAnimationFrame(() => requestAnimationFrame(done));"""
 
 
 @pytest.fixture(scope="module")
@@ -190,13 +187,15 @@ def visit(browser, page):
 
 
 def picture(browser):
-    """Return what the canvas shows, (height, width, 3)."""
+    """Return what can be seen of the canvas, left of the panel: (height, width, 3)."""
     from io import BytesIO
 
     from PIL import Image
 
-    text = browser.execute_async_script(DRAWN).partition(",")[2]
-    return np.array(Image.open(BytesIO(base64.b64decode(text))).convert("RGB"))
+    browser.execute_async_script(SETTLED)
+    seen = Image.open(BytesIO(browser.get_screenshot_as_png())).convert("RGB")
+    panel = browser.find_element("id", "panel").location["x"]
+    return np.array(seen)[:, :panel]
 
 
 def check_no_error(browser):
