@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rodsim.rest.descent import SAME, TURN, Descent, Scales, descend
+from rodsim.rest.descent import GREATEST, SAME, TURN, Descent, Scales, descend
 from rodsim.rest.forces import Forces
 from rodsim.rest.modes import modes_of
 from rodsim.scene.state import State
@@ -77,7 +77,10 @@ def find_rest(
         return Rest(scene.initial, residual, scales.tolerance, 0, 0, failure=reason)
     now, modes, left = _settled(exact, scales, most, 0 if saddle else SADDLES, tell)
     if not now.failure:
-        now = descend(Forces(scene, exact=False), now, scales, most, PAPER, tell)
+        slack = PAPER
+        if modes and modes.growing:  # only Newton's method leads from a saddle to the one beside it
+            now, slack = replace(now, tau=GREATEST * scales.first), np.inf
+        now = descend(Forces(scene, exact=False), now, scales, most, slack, tell)
     failure = now.failure and f"{now.failure}; residual {now.residual:.3g}"
     if not failure and now.state.position[2].min() < scene.floor:
         failure = "the shape at rest goes through the wall, which holds nothing without contact"
