@@ -23,7 +23,7 @@ from rodsim.blocks.words import Body, End, Motion
 from rodsim.case.expressions import Expression
 from rodsim.case.fields import Name, not_empty
 from rodsim.case.words import did_you_mean
-from rodsim.compiled.parts import FORCE, HOLD, PLACE, RELEASE, TRACERS, Part, Statics
+from rodsim.compiled.parts import FORCE, HOLD, PLACE, RELEASE, TRACERS, Part
 from rodsim.compiled.row import Entry, Row
 from rodsim.errors import CaseError
 from rodsim.forces.places import rod_named
@@ -183,6 +183,7 @@ def _build(case, scene) -> list[Part]:
     if not case.bodies and not any(getattr(rod, w) for rod in case.rods.values() for w in ENDS):
         return []
     from rodsim.blocks.report import Report
+    from rodsim.blocks.statics import statics_of
     from rodsim.blocks.table import numbers_of
 
     rows = _Rows()
@@ -207,7 +208,7 @@ def _build(case, scene) -> list[Part]:
     shared = {"row": row, "fixed": fixed, "drive": "a motion or a motor"}
     parts = [
         Part("held", PLACE, "rodsim.blocks.frames:place_members", **shared,
-             statics=_statics(blocks, scene)),
+             statics=statics_of(blocks, scene, shared)),
         Part("held", RELEASE, "rodsim.blocks.hold:release", **shared),
         Part("held", HOLD, "rodsim.blocks.hold:hold", **shared, external=report.driven, sums=sums,
              gauges=report.gauges, report=report, series=report.series, labels=report.labels),
@@ -217,42 +218,6 @@ def _build(case, scene) -> list[Part]:
             Part("held", TRACERS, "rodsim.blocks.hold:stir", **shared, pressure=report.pressure)
         )
     return [*parts, *_body_loads(case, scene)]
-
-
-def _statics(blocks, scene) -> Statics:
-    """Return the degrees of freedom c N + k that something holds, and what free bodies carry.
-
-    Held are the places of ends, of clamped ones the turns, and fixed bodies.
-    """
-    from rodsim.blocks import fields as f
-
-    if reason := _no_rest(blocks):
-        return Statics(refused=reason)
-    n, held, carried = scene.nodes, [], []
-    for block in blocks:
-        if not block.free and block.node >= 0:
-            held += [c * n + block.node for c in range(6)]
-        for member in block.members:
-            clamped = member.joint.kind == f.CLAMPED
-            held += [c * n + member.node for c in range(6 if clamped else 3)]
-            if block.free:
-                carried.append((block.node, member.node, clamped))
-    return Statics(holds=tuple(held), carries=tuple(carried))
-
-
-def _no_rest(blocks) -> str:
-    """Return why states at rest cannot be looked for, or nothing."""
-    from rodsim.blocks import fields as f
-
-    for block in blocks:
-        if block.node >= 0 and block.motion >= 0:
-            return f"body '{block.name}' has a given motion: at rest it is free or fixed"
-        for member in block.members:
-            if member.joint.motor != f.STILL:
-                return f"the motor of {member.name} drives for ever: leave it out"
-            if member.joint.kind == f.HOOKED:
-                return f"rest does not know hooks: leave out that of {member.name}"
-    return ""
 
 
 def _check_finite(row, case):

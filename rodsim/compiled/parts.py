@@ -83,6 +83,7 @@ class Statics:
     holds : degrees of freedom that it keeps where they are, c N + k for component c (x, y, z, then
     three of the rotation vector) of node k.
     carries : ends of rods that free bodies hold: (node of the body, node, whether clamped).
+    adds : forces with an energy that a run has only where constraints are solved.
     move : the farthest that a point may move in one step, length.
     refused : why states at rest cannot be looked for with it, if they cannot.
     """
@@ -91,6 +92,7 @@ class Statics:
     stiffness: Callable | None = None
     holds: tuple[int, ...] = ()
     carries: tuple[tuple[int, int, bool], ...] = ()
+    adds: tuple = ()
     move: float = math.inf
     refused: str = ""
 

@@ -22,8 +22,14 @@ def exact_parts(scene: Scene) -> PartList:
     """Return the forces of a scene with the exact gradients of their energies."""
     return PartList(
         part if part.statics.exact is None else replace(part, kernel=part.statics.exact)
-        for part in scene.parts.of(FORCE)
+        for part in forces_of(scene)
     )
+
+
+def forces_of(scene: Scene) -> PartList:
+    """Return the forces of a scene, with those of its constraints that have an energy."""
+    added = [force for part in scene.parts for force in part.statics.adds]
+    return PartList([*scene.parts.of(FORCE), *added])
 
 
 class Forces:
@@ -33,7 +39,7 @@ class Forces:
     """
 
     def __init__(self, scene: Scene, exact: bool = True):
-        parts = exact_parts(scene) if exact else scene.parts.of(FORCE)
+        parts = exact_parts(scene) if exact else forces_of(scene)
         self.scene, self.exact, self.parts = scene, exact, parts
         self.free = free_numbers(scene)
         self.carried = Carried(scene, self.free)
@@ -110,7 +116,7 @@ def free_numbers(scene: Scene) -> np.ndarray:
 def stored_energies(scene: Scene, state: State) -> dict[str, float]:
     """Return the energies that the forces of a scene store, summed over rods, by name."""
     found = {}
-    for part in scene.parts.of(FORCE):
+    for part in forces_of(scene):
         for name, value in _energies(part, state, scene).items():
             found[name.removesuffix("_energy")] = float(np.sum(value))
     return found

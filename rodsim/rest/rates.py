@@ -35,18 +35,20 @@ class Rates:
 def mobility(scene, state, free: np.ndarray) -> np.ndarray:
     """Return the velocities of the free degrees of freedom for unit loads, one in each column.
 
-    What holds nodes takes its own loads, so that they stay or go where their bodies go.
+    What holds nodes takes its own loads, so that they stay or go where their bodies go. Hooks move
+    the state as it is: that is taken off.
     """
-    flows, none = (
-        Evaluation(scene, scene.parts.of(RELEASE, FLOW, HOLD)),
-        np.zeros_like(state.tracer),
-    )
-    matrix = np.empty((len(free), len(free)))
+    flows = Evaluation(scene, scene.parts.of(RELEASE, FLOW, HOLD))
+
+    def velocity(*numbers):
+        loads, found = np.zeros((6, scene.nodes)), np.zeros((6, scene.nodes))
+        loads.flat[list(numbers)] = 1.0
+        flows.add(state, loads, found, np.zeros_like(state.tracer))
+        return found.ravel()[free]
+
+    matrix, still = np.empty((len(free), len(free))), velocity()
     for column, number in enumerate(free):
-        loads, velocity = np.zeros((6, scene.nodes)), np.zeros((6, scene.nodes))
-        loads.flat[number] = 1.0
-        flows.add(state, loads, velocity, none)
-        matrix[:, column] = velocity.ravel()[free]
+        matrix[:, column] = velocity(number) - still
     return matrix
 
 

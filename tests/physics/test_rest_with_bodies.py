@@ -12,7 +12,7 @@ from scenes import system_from
 from scipy.optimize import brentq
 
 from rodsim.errors import UsageError
-from rodsim.rest.forces import Forces
+from rodsim.rest.forces import Forces, stored_energies
 from rodsim.rest.rates import mobility, rates_of
 from rodsim.rest.solve import find_rest
 from rodsim.rest.stability import stability_of
@@ -20,6 +20,7 @@ from rodsim.rest.start import start_from_case
 
 MODULI = {"bending": 1.3, "twisting": 0.9, "shear": 52.0, "stretch": 52.0}
 CLAMPED, TO_CELL = {"hold": "clamped"}, {"hold": "clamped", "to": "cell"}
+HOOK = {"hold": "clamped", "to": "cell", "hook": {"bending": 0.83, "twisting": 0.6}}
 L, R = 6.0, 0.9
 COLUMN = {  # a ball on a column that stands on the ground
     "fluid": {"viscosity": 0.3, "epsilon": 0.5},
@@ -101,6 +102,47 @@ def test_the_stiffness_is_the_derivative_of_the_loads(hanging, exact):
     )
 
 
+def test_tethers_hooks_and_contact_of_a_free_body_are_in_its_stiffness():
+    """Out of rest, where all of them pull: 1e-4 of a spacing, so 1e-8 of it by differences."""
+    scene = scene_of(changed(HANGING, {
+        "rods.rod.end": HOOK, "contact": {"diameter": 0.9}, "fluid.wall": {"z": -4.7},
+        "tethers": {"aside": {"from": {"body": "cell", "at": [0, 0.9, 0]}, "stiffness": 0.7,
+                              "to": {"rod": "rod", "s": 1.1}}},
+    }))  # fmt: skip
+    forces = Forces(scene)
+    rng, way = np.random.default_rng(4), np.zeros((6, scene.nodes))
+    way[:, -1] = 0.05 * rng.normal(size=6)
+    state = forces.moved(scene.initial, way)
+    change = free_change(forces)
+    expected = forces.stiffness(state) @ change.ravel()[forces.free]
+    found = -slope(forces, state, change)
+    own = np.flatnonzero(forces.free % scene.nodes == scene.nodes - 1)
+    assert abs(expected[own]).min() > 1e-3
+    assert found == pytest.approx(expected, abs=3e-7 * abs(expected).max())
+
+
+@pytest.mark.parametrize("holder", ["space", "cell"])
+def test_a_hook_bends_until_its_torque_is_that_of_the_load(holder):
+    """k theta = F x of a rod on a hook, whose load hangs aside at x; energy 1/2 k theta^2."""
+    k, load = 0.83, 0.21
+    scene = scene_of(changed(COLUMN, {
+        "rods.rod.start": {**HOOK, "to": holder, "hook": {"bending": k, "twisting": 0.6}},
+        "rods.rod.end": None, "rods.rod.shape.length": 3.0, "rods.rod.moduli.bending": 900.0,
+        "rods.rod.loads": {"tip": {"at": "end", "force": [load, 0, 0]}},
+        "bodies.cell.shape.origin": [0, 0, -R], "bodies.cell.motion": "fixed",
+    }))  # fmt: skip
+    found = find_rest(scene)
+    assert (found.failure, found.growing) == ("", 0)
+    start, end = found.state.position[:, 0], found.state.position[:, 30]
+    tangent = found.state.director[2, :, 0]
+    theta = np.arctan2(tangent[0], tangent[2])
+    assert 0.3 < theta < 0.9
+    moment = load * (end[2] - start[2])
+    assert k * theta == pytest.approx(moment, rel=1e-6)  # residual 1e-9 of 900/3
+    stored = stored_energies(scene, found.state)["hook"]
+    assert stored == pytest.approx(0.5 * k * theta**2, rel=1e-9)
+
+
 def test_a_fixed_body_holds_as_the_ground_does():
     load = {"tip": {"at": "start", "force": [0.03, 0.0, -0.02]}}
     ground = changed(COLUMN, {"rods.rod.start": None, "rods.rod.end": CLAMPED,
@@ -130,13 +172,18 @@ def test_a_ball_lies_on_the_wall_where_weight_and_contact_are_equal():
     assert (found.growing, found.neutral) == (0, 11)
 
 
-def test_motions_near_rest_are_those_of_stiffness_and_mobility():
+@pytest.mark.parametrize("end", [TO_CELL, HOOK])
+def test_motions_near_rest_are_those_of_stiffness_and_mobility(end):
     """dz/dt = -A K z against the velocities of a run, of a displacement of 1e-5."""
-    system = system_from(changed(COLUMN, {"bodies.cell.force": [0, 0, -0.5 * THRESHOLD]}))[1]
+    force = [0.1 * THRESHOLD, 0, -0.5 * THRESHOLD]
+    changes = {"bodies.cell.force": force, "rods.rod.end": end}
+    system = system_from(changed(COLUMN, changes))[1]
     state = find_rest(system.scene).state
     forces = Forces(system.scene, exact=False)
     change = 1e-5 * free_change(forces)
     moves = mobility(system.scene, state, forces.free)
+    assert np.linalg.eigvalsh(0.5 * (moves + moves.T)).min() > 0.0
+    assert moves == pytest.approx(moves.T, abs=1e-9 * abs(moves).max())
     expected = -moves @ (forces.stiffness(state) @ change.ravel()[forces.free])
     sides = [
         system.velocities(0.0, forces.moved(state, side * change), system.zeros(), system.zeros())
@@ -166,6 +213,7 @@ def test_a_clamped_rod_relaxes_as_another_program_has_it():
     ("changes", "said"),
     [
         ({"rods.rod.end.motor": {"rate": 0.7}}, "the motor of rod.end drives for ever"),
+        ({"rods.rod.end.hook": {"bending": 0.3}}, "the hook of rod.end is stiff in twist"),
         ({"bodies.cell.motion": {"velocity": [0.2, 0, 0]}}, "'cell' has a given motion: at rest"),
     ],
 )
