@@ -34,7 +34,9 @@ COLUMNS = {
     "--scene", "names", multiple=True, type=click.Choice(tuple(SCENES)), help="Again for more."
 )
 @click.option("--threads", type=click.IntRange(1), default=1, show_default=True)
-def main(quick, repeats, points, names, threads):
+@click.option("--above", type=click.FloatRange(0.6), help="Lowest point over a wall, in epsilon.")
+@click.option("--flat", type=click.FloatRange(0), default=1.0, help="Heights times this.")
+def main(quick, repeats, points, names, threads, above, flat):
     """Measure fast sums of random loads, the worst case, on one thread.
 
     The exact sum is timed at 300 of the points and scaled; both in CPU time, in rounds, so that
@@ -51,21 +53,25 @@ def main(quick, repeats, points, names, threads):
         for size in sizes:
             if size == 1_000_000 and name != "suspension":
                 continue  # minutes for each
-            rows += [measure(name, size, a, repeats) for a in accuracies]
-    picture = [measure("coil, 25 epsilon", 10_000, a, repeats) for a in EVERY]
+            rows += [measure(name, size, a, repeats, above, flat) for a in accuracies]
+    picture = [measure("coil, 25 epsilon", 10_000, a, repeats, above, flat) for a in EVERY]
     tables = [Table("Fast sums", COLUMNS, rows), Table("Error against cost", COLUMNS, picture)]
     return tables, lambda *axes: draw(rows, picture, *axes)
 
 
-def measure(name, size, accuracy, repeats):
-    """Return the row of a scene."""
-    from rodsim.flows.fast.plan import RodSum, relative_error
+def measure(name, size, accuracy, repeats, above=None, flat=1.0):
+    """Return the row of a scene, above a wall z = 0 where ``above`` is given."""
+    from rodsim.flows.fast.plan import relative_error, rod_sum
 
     X, counts = SCENES[name](size)
+    X[2] *= flat
+    if above is not None:
+        X[2] += above * EPSILON - X[2].min()
+    wall = None if above is None else 0.0
     loads = np.random.default_rng(3).normal(size=(6, size))
     loads[3:] *= EPSILON
     begin = time.process_time()
-    fast = RodSum(counts, accuracy, EPSILON, VISCOSITY, "algebraic7")
+    fast = rod_sum(X, counts, accuracy, EPSILON, VISCOSITY, "algebraic7", wall_height=wall)
     begin = time.process_time()
     fast.count(X)
     lists = time.process_time() - begin
@@ -82,7 +88,7 @@ def measure(name, size, accuracy, repeats):
 
     def slow():
         exact[:] = 0.0
-        fast.exact(targets, X, loads, EPSILON, VISCOSITY, exact)
+        fast.exact(targets, X, loads, *fast.fluid, exact)
 
     calls = {
         "fast": Timed(quick, clock=time.process_time),

@@ -42,10 +42,10 @@ def velocity(
     blob : ``"algebraic7"``, eq. (12), or ``"algebraic9"``, eq. (13).
     angular : with False the second sum is not computed and None returned for it.
     wall : float, length, or None. Height z of a plane wall without slip; the fluid is above it,
-        where all sources must be. Formulas: ``flows/wall.py``.
+        where all sources must be. Formulas: ``flows/images.py``.
     accuracy : float, 1e-12 to 0.1, or None. With it the sums are fast instead of exact, to this
         relative error, root mean square over the targets: for sources along curves, one after
-        another, thousands of them (docs/large.md). Not at a wall.
+        another, thousands of them (docs/large.md).
     rods : how many of the sources each curve has, in order; by default all are one curve.
 
     Returns
@@ -99,8 +99,6 @@ def pressure(targets, sources, forces, epsilon, *, blob="algebraic7", wall=None,
 
 def _fast(targets, sources, loads, fluid, blob, angular, wall, accuracy, rods):
     """Return the fast sums (6, T), or (3, T) without w."""
-    if wall is not None:
-        raise UsageError("there is no fast sum beside a wall: leave out accuracy, or wall")
     if not 1e-12 <= accuracy <= 0.1:
         raise UsageError(f"accuracy must be between 1e-12 and 0.1, not {accuracy}")
     counts = np.atleast_1d(sources.shape[1] if rods is None else rods).astype(int)
@@ -108,16 +106,18 @@ def _fast(targets, sources, loads, fluid, blob, angular, wall, accuracy, rods):
         raise UsageError(f"rods must be numbers of sources that add up to {sources.shape[1]}")
     if not np.isfinite(sources).all():
         raise UsageError("sources must be finite for a fast sum")
-    from rodsim.flows.fast.plan import GroupSum, RodSum
+    from rodsim.flows.fast.plan import GroupSum, rod_sum
 
     own = angular and np.array_equal(targets, sources)
+    _, height = _sums(wall, sources)
+    wall = height[0] if height else None
     out = np.zeros((6 if angular else 3, targets.shape[1]))
     with computing():
         if own:
-            fast = RodSum(counts, accuracy, *fluid, blob)
+            fast = rod_sum(sources, counts, accuracy, *fluid, blob, wall_height=wall)
             fast.kernel(fast.prepare(sources, loads), sources, loads, False, out)
         else:
-            fast = GroupSum(counts, accuracy, *fluid, blob, angular)
+            fast = GroupSum(counts, accuracy, *fluid, blob, angular, wall)
             tables = fast.prepare(targets, sources, loads)
             fast.kernel(tables, targets, sources, loads, False, out)
     if fast.error.max() > accuracy:
@@ -125,6 +125,7 @@ def _fast(targets, sources, loads, fluid, blob, angular, wall, accuracy, rods):
             f"accuracy {accuracy:g} cannot be reached here, only {fast.error.max():.2g}: leave it "
             "out, for exact sums"
         )
+    out[:, _below(targets, wall)] = np.nan
     return out
 
 

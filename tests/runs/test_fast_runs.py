@@ -10,8 +10,10 @@ from test_commands import call
 from test_resume import killed_at_every_step, make
 
 from rodsim import open_trajectory, resume, simulate
+from rodsim.compiled.parts import FLOW
 from rodsim.errors import CaseError
 from rodsim.integrators.make import make_integrator
+from rodsim.scene.build import build_scene
 
 MODULI = "{bending: 3.5e-3, twisting: 2.5e-3, shear: 0.7, stretch: 0.9}"
 SCENE = f"""
@@ -86,6 +88,27 @@ def test_info_says_what_sums_would_cost(tmp_path):
     )
 
 
+@pytest.mark.compiled
+def test_info_says_it_of_a_wall_and_a_held_end_too(tmp_path):
+    (tmp_path / "case.yaml").write_text(SCENE)
+    more = "--set", "fluid.wall={z: -4}", "--set", "rods.coil.start={hold: clamped}"
+    told = call("info", str(tmp_path / "case.yaml"), *more).stdout
+    assert "sums: fast; an evaluation takes about" in told
+
+
+def test_the_parts_are_those_of_the_fluid_and_held_points_are_exact(tmp_path):
+    for change, home, held in (
+        ([], "spatial_7", []),
+        (["fluid.wall={z: -4}"], "wall_spatial_7", []),
+        (["rods.coil.end={hold: clamped}", "fluid.blob=algebraic9"], "spatial_9", [229]),
+    ):
+        scene = build_scene(make(tmp_path, SCENE, change))
+        (part,) = (part for part in scene.parts.of(FLOW) if part.name == "fluid")
+        assert part.kernel == f"rodsim.flows.fast.parts:{home}"
+        assert part.prepare.__self__._held == held
+        assert len(part.needs) == 1 + len(held)
+
+
 def test_an_accuracy_that_limits_the_run_is_warned_of(tmp_path):
     assert make(tmp_path, SCENE).warnings == ()
     (warning,) = make(tmp_path, SCENE, ["fluid.sums.accuracy=2e-5"]).warnings
@@ -102,7 +125,6 @@ def test_an_accuracy_that_limits_the_run_is_warned_of(tmp_path):
     [
         ("fluid.sums.accuracy=0.5", "fluid.sums.accuracy"),
         ("fluid.sums={}", "fluid.sums.accuracy"),
-        ("fluid.wall={z: -9}", "there is no fast sum beside a wall"),
     ],
 )
 def test_what_cannot_be_is_refused(tmp_path, change, words):

@@ -10,16 +10,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated
 
+import numpy as np
 from pydantic import Field
 
+from rodsim.blocks.ends import end_node, held_ends
 from rodsim.case.fields import Model
+from rodsim.compiled.kernels import address_of
 from rodsim.compiled.parts import FLOW, TRACERS, Part
-from rodsim.errors import CaseError
 from rodsim.flows.fluid import pressure_of
+from rodsim.forces.places import rod_named
 from rodsim.registry import Kind
 
-HOME = "rodsim.flows.fast.sums"
-EXACT = "rodsim.flows.free"
+HOME = "rodsim.flows.fast.parts"
 SHARE = 0.1  # of the tolerance: what the sums may add to the error of a step
 PURE = (0, 0, 0)  # the dimension of a ratio
 ERRORS = ("sum_error", (2,), PURE)
@@ -48,20 +50,21 @@ class Sums(Model):
 def _build(case, scene) -> list[Part]:
     if case.fluid.sums is None:
         return []
-    if scene.nodes > scene.rods.points:
-        reason = "there is no fast sum with bodies and wound hooks: leave out sums"
-        raise CaseError([case.source.problem(("fluid", "sums"), reason)])
-    blob = scene.blob.removeprefix("algebraic")
+    exact, at = ("free", "") if scene.wall is None else ("wall", "wall_")
+    exact, blob = f"rodsim.flows.{exact}", scene.blob.removeprefix("algebraic")
     kind = "planar" if scene.planar else "spatial"
-    rods, tracers = _Rods(scene, case.fluid.sums), _Tracers(scene, case.fluid.sums)
+    held = [end_node(rod_named(scene.rods, rod), which) for rod, which, _ in held_ends(case)]
+    needs = f"{exact}:{kind}_{blob}", *([f"{exact}:sum_{blob}"] if held else [])
+    rods = _Rods(scene, case.fluid.sums, held, needs[-1])
+    tracers = _Tracers(scene, case.fluid.sums)
     return [
         Part(
-            "fluid", FLOW, f"{HOME}:{kind}_{blob}", prepare=rods.prepare,
-            needs=(f"{EXACT}:{kind}_{blob}",), observe=rods.observe, series=(ERRORS,),
+            "fluid", FLOW, f"{HOME}:{at}{kind}_{blob}", prepare=rods.prepare,
+            needs=needs, observe=rods.observe, series=(ERRORS,),
         ),
         Part(
-            "fluid", TRACERS, f"{HOME}:tracers_{blob}", prepare=tracers.prepare,
-            needs=(f"{EXACT}:tracers_{blob}",), pressure=pressure_of(scene, EXACT),
+            "fluid", TRACERS, f"{HOME}:{at}tracers_{blob}", prepare=tracers.prepare,
+            needs=(f"{exact}:tracers_{blob}",), pressure=pressure_of(scene, exact),
             **({"observe": tracers.observe, "series": (TRACER_ERRORS,)} if tracers.any else {}),
         ),
     ]  # fmt: skip
@@ -70,17 +73,21 @@ def _build(case, scene) -> list[Part]:
 class _Rods:
     """The fast sum of a scene's rods, made when it is first wanted."""
 
-    def __init__(self, scene, sums):
+    def __init__(self, scene, sums, held, exact):
         self._about = scene.rods.count, sums.accuracy, scene.epsilon, scene.viscosity, scene.blob
-        self._planar, self.sum = scene.planar, None
+        self._options, self.sum = (scene.planar, scene.wall), None
+        self._held, self._exact = held, exact
+        self._start = scene.initial.position  # by which the number of proxies is chosen
 
     def prepare(self, state, loads):
         """Return the tables of the sum for a step from a state."""
         if self.sum is None:
-            from rodsim.flows.fast.plan import RodSum
+            from rodsim.flows.fast.plan import rod_sum
 
-            self.sum = RodSum(*self._about, self._planar)
-        return self.sum.prepare(state.position, loads)
+            self.sum = rod_sum(self._start, *self._about, *self._options)
+            if self._held:
+                self.sum.held, self.sum.sum = self._held, address_of(self._exact)
+        return self.sum.prepare(*_of_rods(self.sum, state.position, loads))
 
     def observe(self, state, row, scene):
         """Return the errors of u and w that the tables were made with."""
@@ -93,24 +100,24 @@ class _Tracers:
     def __init__(self, scene, sums):
         self._about = scene.rods.count, sums.accuracy, scene.epsilon, scene.viscosity, scene.blob
         self.any, self.sum = scene.initial.tracer.size > 0, None
+        self._wall = scene.wall
 
     def prepare(self, state, loads):
         """Return the tables of the sum for a step from a state."""
         if self.sum is None:
             from rodsim.flows.fast.plan import GroupSum
 
-            self.sum = GroupSum(*self._about)
-        return self.sum.prepare(state.tracer, state.position, loads)
+            self.sum = GroupSum(*self._about, wall_height=self._wall)
+        return self.sum.prepare(state.tracer, *_of_rods(self.sum, state.position, loads))
 
     def observe(self, state, row, scene):
         """Return the error of u that the tables were made with."""
         return {TRACER_ERRORS[0]: (UNKNOWN if self.sum is None else self.sum.error)[0]}
 
 
-def _check(case, rod_names) -> Iterator[tuple]:
-    fluid = case.fluid
-    if fluid is not None and fluid.sums is not None and fluid.wall is not None:
-        yield ("fluid", "sums"), "there is no fast sum beside a wall: leave out sums, or wall"
+def _of_rods(fast, *arrays):
+    """Return the columns of the points of rods, which come first among the nodes."""
+    return [np.ascontiguousarray(array[:, : fast.arcs.points]) for array in arrays]
 
 
 def _doubt(case) -> Iterator[tuple]:
@@ -132,6 +139,5 @@ KIND = Kind(
     where="Fluid",
     words=Sums,
     about="sums over all points that are fast and have a relative error, for thousands of points",
-    check=_check,
     doubt=_doubt,
 )

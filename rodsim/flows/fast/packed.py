@@ -1,23 +1,24 @@
 """All tables of a fast sum as one array of numbers, as a part takes them (``Part.fixed``).
 
-First the numbers epsilon, viscosity and what a force and a torque add at their own point, then
-where each table begins and how many entries it has, then the tables. Those of integers have two in
-the room of one float64.
+First the numbers epsilon, viscosity, what a force and a torque add at their own point, the height
+of the wall, the address of the exact sum, then where each table begins and how many entries it has,
+then the tables. Those of integers have two in the room of one float64.
 """
 
 import numpy as np
 
 from rodsim.compiled.flags import unsigned
 
-EPSILON, VISCOSITY, OWN_FORCE, OWN_TORQUE, HEAD = range(5)
+EPSILON, VISCOSITY, OWN_FORCE, OWN_TORQUE, WALL, SUM, HEAD = range(7)
 (
     NODES, SLOTS, WEIGHTS, CHUNKS, TOPS,  # the arcs, see Arcs
     FAR_BEGINS, FAR, NEAR_BEGINS, NEAR,  # who is far from, or near to, each arc or group of targets
     FAR_WORK, FAR_SHARES, NEAR_WORK, NEAR_SHARES,  # arcs or groups, and runs of about equal work
     SAMPLE, SAMPLE_FAR, _, SAMPLE_NEAR, _,  # where the error is measured, and what that needs
     TARGETS, GROUPS,  # targets that are no sources: in their order, and where each group begins
+    HELD,  # points at which the sums are exact
     TABLES,
-) = range(21)  # fmt: skip
+) = range(22)  # fmt: skip
 
 
 def pack(numbers, tables: dict) -> np.ndarray:

@@ -1,7 +1,8 @@
 """From an accuracy to the tables of a fast sum, for the points where they are now.
 
 An error of interpolation through n Chebyshev points falls as rho^-n, rho = 1/theta +
-sqrt(1/theta^2 + 1), for arcs that are apart by half of their length over theta: that gives n. It is
+sqrt(1/theta^2 + 1), for arcs that are apart by half of their length over theta: that gives n, where
+rods are smooth; of some larger numbers that is taken which makes the fewest pairs. The rule is
 only where to begin: each time lists are made, the sum is held against the exact one at 64 points,
 evenly spread, and where it is not good enough the rule of what is far is made stricter.
 
@@ -13,23 +14,29 @@ and positive in all modes. It makes a twentieth of the accuracy in smooth loads.
 from __future__ import annotations
 
 import math
+from itertools import islice
 
 import numpy as np
 
+from rodsim.compiled.constants import ON_WALL
+from rodsim.flows import free, wall
 from rodsim.flows.blobs import BLOBS
 from rodsim.flows.fast import packed
 from rodsim.flows.fast.arcs import COUNT, LO, PROXIES, build_arcs
 from rodsim.flows.fast.bounds import bound
 from rodsim.flows.fast.groups import grouped, lists_of_groups
 from rodsim.flows.fast.lists import both_ways, pairs_of_arcs
-from rodsim.flows.fast.sums import group_kernel, sum_kernel
-from rodsim.flows.free import EIGHT_PI, velocity_kernel
+from rodsim.flows.fast.parts import group_kernel, sum_kernel
+from rodsim.flows.fast.shares import cost_of, shared_out, sums_of
+from rodsim.flows.free import EIGHT_PI
 
 WIDE, NARROW = 0.8, 0.5  # theta of a rough and of a fine sum
 FINE = 1e-4  # from here on a sum is fine
 LARGE = 50_000  # points: errors of far arcs add up, and smoothness is asked twice as much of
-STRICTER = (1.0, 1.0), (0.8, 0.2), (0.65, 0.05), (0.5, 0.01)  # shares of theta and smoothness
-SHARES = 256  # runs of about equal work, which threads share out
+MORE, SHARP = (4, 12), 1e-7  # so many more proxies are tried, down to that accuracy
+STRICTER = (  # shares of theta and smoothness
+    (1.0, 1.0), (0.8, 0.2), (0.65, 0.05), (0.5, 0.01), (0.35, 1e-3), (0.25, 1e-4)
+)  # fmt: skip
 SAMPLES = 64
 # 8 pi mu times u/(g/epsilon) and w/(m/epsilon^3) of a point at itself: H1 and D1/4 at r = 0
 OWN = {"algebraic7": (2.0, 2.5), "algebraic9": (3.0, 6.25)}
@@ -48,6 +55,16 @@ def proxies_for(accuracy: float) -> int:
     return max(4, 2 * round(-0.5 * math.log(accuracy) / math.log(rho)))
 
 
+def rod_sum(points, counts, accuracy, *fluid, **options) -> RodSum:
+    """Return the :class:`RodSum` whose number of proxies takes the fewest pairs at points (3, N).
+
+    More than the accuracy needs where rods are smooth let arcs of wound ones be longer.
+    """
+    more = proxies_for(accuracy) + np.array([0, *(MORE if accuracy >= SHARP else ())])
+    sums = [RodSum(counts, accuracy, *fluid, proxies=int(p), **options) for p in more]
+    return min(sums, key=lambda one: one.foreseen(points))
+
+
 class FastSum:
     """The fast sum over some rods: its arcs, and of the last lists the error.
 
@@ -55,9 +72,12 @@ class FastSum:
     ``pairs`` : how many pairs of points or proxies an evaluation takes.
     """
 
-    def __init__(self, counts, accuracy: float, epsilon: float, viscosity: float):
+    def __init__(self, counts, accuracy: float, epsilon, viscosity, wall_height=None, proxies=None):
+        self.walled = wall_height is not None
         self.accuracy, self.fluid = accuracy, (epsilon, viscosity)
-        self.arcs = build_arcs(counts, proxies_for(accuracy))
+        self.fluid += (wall_height,) if self.walled else ()
+        self.held, self.sum = (), 0
+        self.arcs = build_arcs(counts, proxies or proxies_for(accuracy))
         self._tree = self.arcs.nodes, self.arcs.proxies, self.arcs.weights
         self._tree += self.arcs.chunks, self.arcs.tops
         self.error, self.pairs = np.full(2, np.nan), 0
@@ -79,18 +99,30 @@ class FastSum:
         p = packed
         own = dict(zip((p.NODES, p.SLOTS, p.WEIGHTS, p.CHUNKS, p.TOPS), self._tree, strict=True))
         names = p.FAR_BEGINS, p.FAR, p.NEAR_BEGINS, p.NEAR
-        return p.pack((*self.fluid, *self.own), own | dict(zip(names, lists, strict=True)) | more)
+        wall = self.fluid[2] if self.walled else 0.0
+        numbers = *self.fluid[:2], *self.own, wall, self.sum
+        more |= {p.HELD: np.array(self.held, np.int32)}
+        return p.pack(numbers, own | dict(zip(names, lists, strict=True)) | more)
+
+    def _exact(self, blob, planar=False, angular=True):
+        return (wall if self.walled else free).velocity_kernel(BLOBS[blob], planar, angular)
 
 
 class RodSum(FastSum):
-    """The fast sum at the points of the rods themselves."""
+    """The fast sum at the points of the rods themselves.
 
-    def __init__(self, counts, accuracy, epsilon, viscosity, blob, planar=False):
-        super().__init__(counts, accuracy, epsilon, viscosity)
+    As a part it is exact at points that are ``held``, by the sum at an address ``sum``.
+    """
+
+    def __init__(
+        self, counts, accuracy, epsilon, viscosity, blob, planar=False, wall_height=None,
+        proxies=None,
+    ):  # fmt: skip
+        super().__init__(counts, accuracy, epsilon, viscosity, wall_height, proxies)
         alone = np.array(OWN[blob]) / (EIGHT_PI * viscosity * np.array([epsilon, epsilon**3]))
         self.alone, self.own = np.repeat(alone, 3)[:, None], SAFE * accuracy * alone
-        self.kernel = sum_kernel(BLOBS[blob], planar)
-        self.exact = velocity_kernel(BLOBS[blob], planar)
+        self.kernel = sum_kernel(BLOBS[blob], planar, self.walled)
+        self.exact = self._exact(blob, planar)
 
     def sampled(self, points) -> np.ndarray:
         """Return the points (3, S) at which the error is measured."""
@@ -100,6 +132,14 @@ class RodSum(FastSum):
         """Return the tables by the first rule, and set ``pairs``, without any measuring."""
         sample = _spread_out(self.arcs.points)
         return self.tables(points, self.bounds(points), next(self.rules()), sample)
+
+    def foreseen(self, points) -> int:
+        """Return the pairs by the first two rules together: either may be the one that holds."""
+        sample, bounds, total = _spread_out(self.arcs.points), self.bounds(points), 0
+        for rule in islice(self.rules(), 2):
+            self.tables(points, bounds, rule, sample)
+            total += self.pairs
+        return total
 
     def prepare(self, points, loads) -> np.ndarray:
         """Return the tables for points (3, N), so that the sum of loads (6, N) is good enough."""
@@ -121,35 +161,45 @@ class RodSum(FastSum):
         arcs, nodes = self.arcs, self.arcs.nodes
         far, near = pairs_of_arcs(points, nodes, bounds, arcs.roots, *rule)
         far, near = both_ways(far, len(nodes)), both_ways(near, len(nodes))
-        costs = [_cost(nodes[:, PROXIES], *far), _cost(nodes[:, COUNT], *near)]
-        self.pairs = int(sum(cost.sum() for cost in costs))
+        costs = [cost_of(nodes[:, PROXIES], *far), cost_of(nodes[:, COUNT], *near)]
+        self.pairs = int(sum(cost.sum() for cost in costs)) + len(self.held) * arcs.points
         holds = np.searchsorted(sample, nodes[:, LO] + nodes[:, COUNT]) > np.searchsorted(
             sample, nodes[:, LO]
         )
         leaves = np.zeros(len(nodes), dtype=bool)
         leaves[arcs.leaves] = True
-        work = _work(packed.FAR_WORK, costs[0] > 0, costs[0])
-        work |= _work(packed.NEAR_WORK, leaves, costs[1])
-        work |= _work(packed.SAMPLE_FAR, holds & (costs[0] > 0), costs[0])
-        work |= _work(packed.SAMPLE_NEAR, holds & leaves, costs[1])
+        work = shared_out(packed.FAR_WORK, costs[0] > 0, costs[0])
+        work |= shared_out(packed.NEAR_WORK, leaves, costs[1])
+        work |= shared_out(packed.SAMPLE_FAR, holds & (costs[0] > 0), costs[0])
+        work |= shared_out(packed.SAMPLE_NEAR, holds & leaves, costs[1])
         return self._packed((*far, *near), work)
 
 
 class GroupSum(FastSum):
     """The fast sum at other targets."""
 
-    def __init__(self, counts, accuracy, epsilon, viscosity, blob, angular=False):
-        super().__init__(counts, accuracy, epsilon, viscosity)
-        self.kernel = group_kernel(BLOBS[blob], angular)
-        self.exact = velocity_kernel(BLOBS[blob], False, angular)
+    def __init__(self, counts, accuracy, epsilon, viscosity, blob, angular=False, wall_height=None):
+        super().__init__(counts, accuracy, epsilon, viscosity, wall_height)
+        self.kernel = group_kernel(BLOBS[blob], angular, self.walled)
+        self.exact = self._exact(blob, False, angular)
         self.rows = 6 if angular else 3
 
+    @property
+    def floor(self) -> float:
+        """Height below which there is no fluid."""
+        return self.fluid[2] - ON_WALL * self.fluid[0] if self.walled else -math.inf
+
     def prepare(self, targets, points, loads) -> np.ndarray:
-        """Return the tables for targets (3, T) and points (3, N), as for the rods."""
-        bounds, sample = self.bounds(points), _spread_out(targets.shape[1])
+        """Return the tables for targets (3, T) and points (3, N), as for the rods.
+
+        Targets below the wall, where there is no fluid, are left out.
+        """
+        inside = np.flatnonzero(targets[2] >= self.floor)
+        bounds, sample = self.bounds(points), inside[_spread_out(len(inside))]
         some, exact = np.ascontiguousarray(targets[:, sample]), np.zeros((self.rows, len(sample)))
         self.exact(some, points, loads, *self.fluid, exact)
-        groups = grouped(targets)
+        order, begins = grouped(np.ascontiguousarray(targets[:, inside]))
+        groups = inside[order].astype(np.int32), begins
         for rule in self.rules():
             fixed = self.tables(points, targets, bounds, rule, sample, groups)
             found = np.zeros((self.rows, targets.shape[1]))
@@ -165,14 +215,18 @@ class GroupSum(FastSum):
         nodes, roots = self.arcs.nodes, self.arcs.roots
         lists = lists_of_groups(points, targets, order, begins, nodes, bounds, roots, *rule)
         sizes = np.diff(begins)
-        cost = sizes * (_sums(nodes[:, PROXIES], *lists[:2]) + _sums(nodes[:, COUNT], *lists[2:]))
+        cost = sizes * (
+            sums_of(nodes[:, PROXIES], *lists[:2]) + sums_of(nodes[:, COUNT], *lists[2:])
+        )
         self.pairs = int(cost.sum())
-        place = np.empty(len(order), dtype=int)
+        place = np.empty(targets.shape[1], dtype=int)
         place[order] = np.arange(len(order))
         holds = np.zeros(len(sizes), dtype=bool)
         holds[np.searchsorted(begins, place[sample], "right") - 1] = True
         work = {packed.TARGETS: order, packed.GROUPS: begins}
-        work |= _work(packed.NEAR_WORK, sizes > 0, cost) | _work(packed.SAMPLE_NEAR, holds, cost)
+        work |= shared_out(packed.NEAR_WORK, sizes > 0, cost) | shared_out(
+            packed.SAMPLE_NEAR, holds, cost
+        )
         return self._packed(lists, work)
 
 
@@ -194,22 +248,3 @@ def relative_error(found, exact, alone=None) -> np.ndarray:
 def _spread_out(count):
     """Return the numbers of up to 64 points, evenly spread."""
     return np.unique(np.linspace(0, count - 1, min(SAMPLES, count)).astype(int))
-
-
-def _sums(sizes, begins, partners):
-    """Return the sum of the sizes of each one's partners."""
-    ends = np.concatenate([[0.0], np.cumsum(sizes[partners], dtype=float)])
-    return np.diff(ends[begins])
-
-
-def _cost(sizes, begins, partners):
-    return sizes * _sums(sizes, begins, partners)
-
-
-def _work(which, chosen, cost):
-    """Return the tables of what is to be done, in shares of about equal cost."""
-    order = np.flatnonzero(chosen)
-    count = min(SHARES, len(order))
-    ends = np.cumsum(cost[order])
-    inside = np.searchsorted(ends, ends[-1:] * np.arange(1, count) / count) if count else []
-    return {which: order, which + 1: np.concatenate([[0], inside, [len(order)]])}
