@@ -1,12 +1,16 @@
 """Work against precision of the adaptive method: evaluations and largest error, by tolerance.
 
     python benchmarks/work_precision.py [SCENE ...] [--decades 2 7] [--per-decade 3]
+    python benchmarks/work_precision.py --all [SCENE ...] [--budget 20] [-o work-precision]
 
 The ring and the open rod are held against tests/reference, the flagellum against a run of itself
 at a tolerance of 1e-9 (half a minute). Evaluations include rejected steps and estimates of the
 fastest rate. Errors are in um at the end of the case. To compare two versions, run it with each on
 PYTHONPATH.
 For a scene of your own, `rodsim converge` makes its own reference.
+
+With --all: every shipped scene, beside forward Euler and RK4, in one table and one picture
+(all_scenes.py).
 """
 
 import argparse
@@ -14,8 +18,14 @@ from pathlib import Path
 
 import numpy as np
 
-from rodsim.case import load_case
-from rodsim.convergence.outcome import Outcome, solve
+from rodsim.compiled.settings import prepare
+
+prepare()  # the command's settings; before Numba is imported
+
+import all_scenes  # noqa: E402
+
+from rodsim.case import load_case  # noqa: E402
+from rodsim.convergence.outcome import Outcome, solve  # noqa: E402
 
 ROOT = Path(__file__).parent.parent
 SCENES = {"closed_ring": "closed-ring", "open_rod": "open-rod", "flagellum": None}
@@ -54,7 +64,13 @@ def main():
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=", ".join(SCENES))
     parser.add_argument("--decades", nargs=2, type=float, default=(2.0, 7.0))
     parser.add_argument("--per-decade", type=int, default=3)
+    parser.add_argument("--all", action="store_true", help="all shipped scenes, or those named")
+    parser.add_argument("--budget", type=float, default=20.0, help="seconds for a scene, about")
+    parser.add_argument("-o", "--output", default="work-precision", help="name of .csv and .png")
     options = parser.parse_args()
+    if options.all:
+        all_scenes.main(options.scenes, options.budget, options.output)
+        return
     low, high = options.decades
     count = round((high - low) * options.per_decade) + 1
     for scene in options.scenes or SCENES:
