@@ -31,6 +31,8 @@ def main():
             sys.stderr.flush()
             os._exit(end.code)
         raise
+    finally:
+        gc.freeze()  # Python looks for garbage once more at its end, in all that was imported
 
 
 if __name__ == "__main__":

@@ -89,7 +89,7 @@ class Case(Model):
     """
 
     title: str = Field("", description="shown in plots and tables")
-    units: Units = Field(Units.model_construct(), description="unit names, for labels and messages")
+    units: Units = Field(Units(), description="unit names, for labels and messages")
     parameters: dict[ParameterName, Number] = Field({}, description="names for expressions")
     fluid: Fluid = Field(description="the fluid")
     rods: dict[Name, Rod] = Field(min_length=1, description="the rods, by name")
@@ -98,7 +98,7 @@ class Case(Model):
         "length", "passive fluid markers: tubes around rods, or lists of points x, y, z", default={}
     )
     time: Time = Field(description="time and integrator")
-    output: Output = Field(Output.model_construct(), description="frames")
+    output: Output = Field(Output(), description="frames")
     rest: Rest | None = Field(None, description="how `rodsim rest` looks for a state at rest")
 
     _source: Source = PrivateAttr(default_factory=Source)

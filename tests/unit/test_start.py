@@ -21,6 +21,13 @@ prepare()
 from rodsim.compiled.passes import weighted_sum
 print(weighted_sum.stats.cache_hits and "numba.np.arraymath" in sys.modules, "scipy" in sys.modules)
 """
+END = """
+import atexit, gc, sys
+atexit.register(lambda: print(gc.get_freeze_count() > len(sys.modules)))
+sys.argv = ["rodsim", "validate", sys.argv[1]]
+from rodsim.__main__ import main
+main()
+"""
 
 
 def said_by(code, *arguments):
@@ -39,3 +46,7 @@ def test_compiled_code_is_read_without_what_compiles():
     assert "NUMBA_CACHE_DIR" in os.environ
     said_by(COMPILED)  # compiles, where the cache is new
     assert said_by(COMPILED) == "False False"
+
+
+def test_the_end_of_the_command_does_not_look_for_garbage():
+    assert said_by(END, CONFIGS / "closed_ring.yaml").splitlines()[-1] == "True"
