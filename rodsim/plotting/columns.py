@@ -78,7 +78,8 @@ def draw_map(axis, x, y, z, labels, quantity, log=""):
 def set_log(axis, x, y, log="") -> None:
     """Make axes logarithmic: those named in ``log``, "x", "y", "xy" or "none".
 
-    Without a name, those of positive numbers that span two decades or more.
+    Without a name, those of positive numbers that span two decades or more, and x or y of a map
+    whose values follow each other by one ratio.
     """
     for name, values in (("x", x), ("y", y)):
         numbers = all(isinstance(value, int | float | np.number) for value in values)
@@ -86,9 +87,15 @@ def set_log(axis, x, y, log="") -> None:
         positive = bool(known) and min(known) > 0.0
         if name in log.replace("none", "") and not positive:
             raise UsageError(f"--log {log}: {name} has values that are not above zero")
-        wide = positive and max(known) >= 10.0**DECADES * min(known)
+        wide = positive and (max(known) >= 10.0**DECADES * min(known) or _geometric(known))
         if name in log.replace("none", "") or (not log and wide):
             getattr(axis, f"set_{name}scale")("log")
+
+
+def _geometric(values):
+    """Tell whether three values or more, in order, follow each other by one ratio."""
+    ratios = np.array(values[1:]) / values[:-1]
+    return len(ratios) > 1 and ratios[0] > 1.0 and np.ptp(ratios) < 1e-9 * ratios[0]
 
 
 def _edges(values, log):

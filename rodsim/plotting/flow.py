@@ -9,7 +9,7 @@ from rodsim.plotting import style
 # Light colours only, so that dark stream lines and rods stay visible on them.
 SPEED, PRESSURE = ("YlGnBu", 0.0, 0.72), ("RdBu_r", 0.15, 0.85)
 DENSITY = 1.3  # of stream lines; matplotlib keeps 30 of them apart along a side at 1
-BEND = 1.0  # radians between neighbouring lines: where directions turn by more, none is drawn
+BEND = 2.0  # radians between neighbouring lines: where directions turn by more, none is drawn
 INK = "0.12"
 ARROWS = 26  # along the longer side of a plane
 BOX_ARROWS = 9  # along the longest side of a box

@@ -59,8 +59,10 @@ def _pictures(shapes, cameras, key, title, made, progress):
         if compass and frame:
             compass.remove()
             compass = draw_compass(figure, camera)
+        if not frame:
+            style.settle(figure)
+            figure.set_layout_engine("none")  # nothing moves from one picture to the next
         figure.canvas.draw()
-        figure.set_layout_engine("none")  # nothing moves from one picture to the next
         picture = np.asarray(figure.canvas.buffer_rgba())[..., :3]
         height, width = (side - side % 2 for side in picture.shape[:2])
         yield np.ascontiguousarray(picture[:height, :width])

@@ -17,7 +17,7 @@ from rodsim.plotting.wall import draw_wall, with_wall
 
 WIDTH, HEIGHT = 8.0, 5.4  # inches that the panels of a figure may take
 TITLE = 0.22  # inches of the heading of a panel
-GAP = 0.1  # inches between panels
+GAP = 0.14  # inches between panels
 WIDEST, LOWEST = 5.5, 0.3  # inches of a panel
 MARGIN = 0.04  # of the longest side, around what is drawn
 

@@ -106,8 +106,16 @@ def styled(draw):
 
 def save(figure, path, dpi=RASTER_DPI) -> None:
     """Write a figure as .png, .pdf or .svg, whole or not at all; raises FileError."""
+    settle(figure)
     with replacing(path) as temporary, drawing(path):
         figure.savefig(temporary, dpi=dpi)
+
+
+def settle(figure) -> None:
+    """Lay a figure out twice: axes of equal scales are moved after the first time."""
+    if layout := figure.get_layout_engine():
+        for _ in range(2):
+            layout.execute(figure)
 
 
 def refuse_cut(figure) -> None:
@@ -116,7 +124,7 @@ def refuse_cut(figure) -> None:
     with warnings.catch_warnings():
         warnings.filterwarnings("error", "constrained_layout not applied")
         try:
-            figure.draw_without_rendering()
+            settle(figure)
         except UserWarning:
             raise UsageError(too_small(size)) from None
     low, high = figure.get_tightbbox().get_points()

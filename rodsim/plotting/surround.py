@@ -11,7 +11,7 @@ from rodsim.plotting.colours import Scale
 FRAME, BAR, LINE = 0.5, 0.9, 0.18  # inches below a tilted view, of a colour bar, of a line of text
 COMPASS, SCALE = 0.46, 1.1  # inches of the sides of the compass, right of it of a scale bar
 ROW = 1.0  # inches of a row of panels that has room for a label
-TICK = 0.45  # inches of an axis for each number beside it
+TICK = 0.45, 0.3  # inches of an axis for each number below it, beside it
 
 
 def set_stage(axis, camera: Camera, bounds, size=(8.0, 5.4)) -> None:
@@ -23,9 +23,10 @@ def set_stage(axis, camera: Camera, bounds, size=(8.0, 5.4)) -> None:
     axis.set_ylim(*bounds[:, 1])
     if not camera.flat:
         axis.set_axis_off()
-    for side, inches in zip((axis.xaxis, axis.yaxis), size, strict=True):
-        count = int(np.clip(inches / TICK, 2, 6))
-        side.set_major_locator(MaxNLocator(count, steps=[1, 2, 2.5, 5, 10], min_n_ticks=2))
+    for side, inches, tick in zip((axis.xaxis, axis.yaxis), size, TICK, strict=True):
+        count = int(np.clip(inches / tick, 2, 6))
+        least = 1 if count == 2 else 2  # the other side has the same scale
+        side.set_major_locator(MaxNLocator(count, steps=[1, 2, 2.5, 5, 10], min_n_ticks=least))
 
 
 def draw_scale(axis, bounds, unit: str):

@@ -233,11 +233,12 @@ def test_paraview_sees_the_surface(towed, tmp_path):
 @pytest.mark.parametrize("kind", ["tube", "line"])
 def test_bodies_are_drawn_where_they_are(towed, kind):
     pytest.importorskip("matplotlib")
-    from rodsim.plotting import pictures, style
+    from rodsim.plotting import style
+    from rodsim.plotting.look import Look
     from rodsim.plotting.surround import set_stage
 
     with open_trajectory(towed) as run:
-        camera, shapes, _ = pictures._look(run, [0, run.frames - 1], "yz", kind, "time", False)
+        camera, shapes, _ = Look("yz", kind, "time").of(run, [0, run.frames - 1])
         surface = run.surfaces(run.frames - 1)
     axis = style.new_figure(3.0, 3.0).add_subplot()
     set_stage(axis, camera, shapes.bounds(camera))

@@ -573,4 +573,5 @@ def test_series_name_lines_by_what_does_not_follow_from_x(here):
         row["speed"] = 5.0
     assert set(series(summary, "fluid.viscosity", "speed")[2]) == {"points = 40", "points = 50"}
     lines = series(summary, "rods.ring.shape.points", "speed")[2]
-    assert set(lines) == {"viscosity = 2e-06", "viscosity = 3e-06"}
+    unit = "g µm⁻¹ s⁻¹"
+    assert set(lines) == {f"viscosity = 2e-06 {unit}", f"viscosity = 3e-06 {unit}"}

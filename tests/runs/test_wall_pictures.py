@@ -99,7 +99,7 @@ def test_colours_and_stream_lines_do_not_break_on_what_is_below(runs, tmp_path, 
     monkeypatch.setattr(Axes, "streamplot", lambda *a, **k: streams.append(stream(*a, **k)))
 
     def noted(*args, **options):
-        limits.append((options.get("vmin"), options.get("vmax")))  # the key has a mesh too
+        limits.append((options["norm"].vmin, options["norm"].vmax))  # the key has a mesh too
         return mesh(*args, **options)
 
     monkeypatch.setattr(Axes, "pcolormesh", noted)

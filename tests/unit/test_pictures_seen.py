@@ -404,8 +404,46 @@ def test_axes_over_two_decades_are_logarithmic_and_cells_lie_about_their_values(
     axis = draw_columns(figure.add_subplot(), x * 2, [5.0, 6, 7, 8, 9, 10], groups, ("x", "y"))
     assert (axis.get_xscale(), axis.get_yscale()) == ("log", "linear")
     assert faults(figure) == []
+    even = draw_map(
+        Figure().add_subplot(), [100, 200, 400], [0.2, 0.4, 0.6], np.eye(3), ("x", "y"), ("z", "")
+    )
+    assert (even.get_xscale(), even.get_yscale()) == ("log", "linear")  # by one ratio; by one step
     other = draw_columns(Figure().add_subplot(), x, [5.0, 6, 7], [""] * 3, ("x", "y"), "y")
     assert (other.get_xscale(), other.get_yscale()) == ("linear", "log")
+
+
+def test_keys_of_a_map_are_two_that_are_numbers_and_no_other_changes():
+    from types import SimpleNamespace
+
+    from rodsim.errors import UsageError
+    from rodsim.sweep.series import axis_label, check_grid, grid, short_key
+
+    def summary(*values, rows=()):
+        runs = [SimpleNamespace(values=v) for v in values]
+        units = dict.fromkeys(("parameters.b", "rods.a.strain_twist.2", "k"), "um")
+        return SimpleNamespace(
+            plan=SimpleNamespace(runs=runs, key_units=units), rows=dict(enumerate(rows)),
+            unit=lambda column: {"speed": "um s^-1"}.get(column, "um"),
+        )  # fmt: skip
+
+    four = [{"b": b, "k": k} for k in (3, 2) for b in (0.5, 0.25)]
+    rows = [four[0] | {"speed": 7.0}, four[3] | {"speed": 9.0}, four[1]]
+    check_grid(summary(*four), "b", "k")
+    across, up, values = grid(summary(*four, rows=rows), "b", "k", "speed")
+    assert (across, up) == ([0.25, 0.5], [2, 3])
+    assert np.array_equal(values, [[9.0, np.nan], [np.nan, 7.0]], equal_nan=True)
+    for bad, words_said in (
+        ((four, "b", "b"), "two keys"),
+        ((four, "b", "speed"), "two keys of the sweep that are numbers"),
+        (([v | {"k": "pi"} for v in four], "b", "k"), "that are numbers"),
+        (([*four, four[0]], "b", "k"), "other keys change"),
+        ((four[:2], "b", "k"), "needs two values of each"),
+    ):
+        with pytest.raises(UsageError, match=words_said):
+            check_grid(summary(*bad[0]), *bad[1:])
+    assert short_key("rods.a.strain_twist.2") == "strain_twist.2"
+    assert axis_label(summary(), "rods.a.strain_twist.2") == "strain_twist.2 (µm)"
+    assert axis_label(summary(), "speed") == "speed (µm s⁻¹)"
 
 
 def test_stream_lines_stop_where_they_would_wind_up():
