@@ -7,18 +7,22 @@ only those, the others stay as they are. Needs rodsim[plot,rest].
 from __future__ import annotations
 
 import re
-import resource
-import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
-import numpy as np
+from rodsim.compiled.settings import prepare
 
-import rodsim
-from rodsim.analysis.swimming import swimming_velocity
-from rodsim.analysis.topology import writhe
-from rodsim.plotting.style import pretty_unit
+prepare()  # threads and cache as the command has them; before Numba is imported
+
+import numpy as np  # noqa: E402
+
+import rodsim  # noqa: E402
+from rodsim.analysis.swimming import swimming_velocity  # noqa: E402
+from rodsim.analysis.topology import writhe  # noqa: E402
+from rodsim.cli import main  # noqa: E402
+from rodsim.plotting.style import pretty_unit  # noqa: E402
 
 DOCS = Path(__file__).parent
 CONFIGS, PAGE, PICTURES = DOCS.parent / "configs", DOCS / "gallery.md", DOCS / "images/gallery"
@@ -28,9 +32,10 @@ HEAD = """# Gallery
 <!-- Made by docs/gallery.py, which runs all configs, each to its end. Do not edit. -->
 
 The scenes that come with rodsim. Numbers were measured in the runs that the pictures show; none
-of them was shortened. CPU seconds are those of the whole command, of all its threads together,
-with its code compiled before: unlike a clock they mean about the same on a busy machine. Energies
-are elastic.
+of them was shortened. CPU seconds are those of the command, all threads together, without compiling
+and without the start of Python. They were measured on two cores that had much other work, which
+makes them larger than they are alone; the headers of the configs have times on two quiet cores.
+Energies are elastic.
 """
 
 
@@ -135,9 +140,9 @@ def aligns(run):
     return f"mean t_x t_z of the chords {first:.3f} → {last:.3f}"
 
 
-def falls(run):
-    """Writhe of a ring that has left the circle."""
-    return f"at rest out of the plane, writhe {run.observable('writhe')[-1, 0]:.3g}; {energy(run)}"
+def grows(run):
+    """Number of growing modes of what is at rest."""
+    return f"at rest as a circle, of which {run.observable('growing_modes')[-1]:.0f} modes grow"
 
 
 # By config: its number, and options of rodsim plot
@@ -146,7 +151,7 @@ SHOWN = {
     "open_rod_half_twist": (energy, "-n 4"),
     "closed_ring": (energy, "-n 4"),
     "closed_ring_low_twist": (energy, "-n 4"),
-    "michell_ring": (falls, "-n 2 --view 3d"),
+    "michell_ring": (grows, "-n 1 --view 3d"),
     "plasmid": (winds, "-n 4"),
     "plectoneme": (winds, "-n 4"),
     "two_rods_crossing": (touches, "-n 3 --view 3d"),
@@ -167,7 +172,7 @@ SHOWN = {
     "suspension": (aligns, "-n 2 --view 3d"),
     "long_coil": (energy, "-n 2 --view 3d"),
 }
-COMMAND = {"michell_ring": "rest"}  # instead of run
+COMMAND = {"michell_ring": "rest --saddle"}  # instead of run
 
 
 def sentence(name: str) -> str:
@@ -177,14 +182,12 @@ def sentence(name: str) -> str:
     return re.match(r".*?\.(?= |$)", text)[0]
 
 
-def execute(*arguments) -> tuple[float, str]:
-    """Run a command of rodsim; return the CPU seconds it took, and what it said beside."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    command = [sys.executable, "-m", "rodsim", *map(str, arguments)]
-    done = subprocess.run(command, check=True, capture_output=True, text=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return seconds, done.stderr
+def execute(*arguments) -> float:
+    """Run a command of rodsim; return the CPU seconds it took: what it compiles is apart."""
+    begin = time.process_time()
+    if main.main([str(argument) for argument in arguments], standalone_mode=False):
+        raise SystemExit(f"rodsim {' '.join(map(str, arguments))} failed")
+    return time.process_time() - begin
 
 
 def show(name: str, folder: Path) -> str:
@@ -193,10 +196,8 @@ def show(name: str, folder: Path) -> str:
 
     output, picture = folder / f"{name}.h5", folder / f"{name}.png"
     command = COMMAND.get(name, "run")
-    run = command, CONFIGS / f"{name}.yaml", "--overwrite", "-o", output
-    seconds, said = execute(*run)
-    if "compiling" in said:
-        seconds, _ = execute(*run)
+    run = *command.split(), CONFIGS / f"{name}.yaml", "--overwrite", "-o", output
+    seconds = execute(*run)
     number, options = SHOWN[name]
     execute("plot", output, "-q", "-o", picture, *options.split())
     with Image.open(picture) as image:
@@ -220,18 +221,18 @@ def stored_sections() -> dict[str, str]:
     return {part.split()[1]: part.rstrip() + "\n" for part in parts}
 
 
-def main(names) -> None:
+def make(names) -> None:
     """Show some configs, or all; write the page."""
     if missing := {path.stem for path in CONFIGS.glob("*.yaml")} ^ SHOWN.keys():
         raise SystemExit(f"SHOWN lacks, or has too many: {', '.join(sorted(missing))}")
     PICTURES.mkdir(parents=True, exist_ok=True)
-    sections = stored_sections()
     with tempfile.TemporaryDirectory() as folder:
         for name in names or SHOWN:
-            sections[name] = show(name, Path(folder))
+            shown = show(name, Path(folder))
+            sections = stored_sections() | {name: shown}  # as it is now: two may run side by side
             kept = [sections[key] for key in SHOWN if key in sections]
             PAGE.write_text("\n".join([HEAD, *kept]), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    make(sys.argv[1:])

@@ -41,7 +41,7 @@ function addSwitch(id, text, checked, act) {
   label.append(` ${text}`);
   box.addEventListener("change", () => act(box.checked));
 }
-addSwitch("grid", "grid", false, (on) => K3DInstance.setGridVisible(on));
+addSwitch("grid", `grid of ${RUN.grid}`, true, (on) => K3DInstance.setGridVisible(on));
 if (RUN.stripes.length) {
   addSwitch("stripe", "stripe along D1", true, (on) => {
     RUN.stripes.forEach((id) => (world.ObjectsListJson[id].visible = on));

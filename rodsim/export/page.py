@@ -18,7 +18,7 @@ from rodsim.analysis.frames import spread_frames
 from rodsim.analysis.strain import at_points
 from rodsim.errors import FileError
 from rodsim.export.run import tube_radius
-from rodsim.export.stage import build_stage, packed
+from rodsim.export.stage import build_stage, grid_spacing, packed
 from rodsim.files import replacing
 from rodsim.plotting import style
 from rodsim.plotting.energy import draw_energies
@@ -43,8 +43,10 @@ def write_page(run, path, *, frames=None, radius=None, colour="rod") -> int:
     palette = style.colour_map(PALETTE).colors
     hues = [packed(palette[number % len(palette)]) for number in range(len(run.rods))]
     stage = build_stage(run, chosen, radius, hues)
+    unit = style.pretty_unit(run.units["length"])
     data = _panel(run, chosen, colour) | {
-        "radius": f"{radius:.3g} {style.pretty_unit(run.units['length'])}",
+        "radius": f"{radius:.3g} {unit}",
+        "grid": f"{grid_spacing(stage.plot.grid):g} {unit}",
         "rods": [
             {"name": rod.name, "hue": f"#{hue:06x}", "object": number, "points": points}
             for rod, hue, (number, points) in zip(run.rods, hues, stage.tubes, strict=True)

@@ -8,7 +8,6 @@ import numpy as np
 
 from rodsim.analysis.wall import piece_of_wall
 from rodsim.errors import UsageError
-from rodsim.plotting import style
 from rodsim.plotting.bodies import COLOUR as BODY
 from rodsim.plotting.camera import make_camera
 
@@ -36,8 +35,8 @@ def build_stage(run, chosen, radius: float, hues) -> Stage:
     """Return what is seen of some frames of an open run: tubes of a radius, each of its hue."""
     k3d = _library()
     plot = k3d.plot(
-        camera_auto_fit=False, camera_fov=VIEW_ANGLE, menu_visibility=False, grid_visible=False,
-        grid_auto_fit=False, colorbar_object_id=0, axes=_axes(run.units["length"]),
+        camera_auto_fit=False, camera_fov=VIEW_ANGLE, menu_visibility=False, grid_auto_fit=False,
+        colorbar_object_id=0,
     )  # fmt: skip
     position = _frames(run.read, "position", chosen)
     seen = [position, *_add_surroundings(k3d, plot, run, chosen)]
@@ -110,14 +109,14 @@ def _add_wall(k3d, plot, seen, height):
     return corners
 
 
+def grid_spacing(grid) -> float:
+    """Return how far K3D's heavier lines are apart, in a grid of low and high corner (6,)."""
+    return 10.0 ** np.ceil(np.log10(np.max(np.subtract(grid[3:], grid[:3])))) / 10.0
+
+
 def packed(colour) -> int:
     """Return red, green and blue from 0 to 1 as one number, 0xRRGGBB."""
     return int.from_bytes(bytes(round(255 * part) for part in colour[:3]))
-
-
-def _axes(unit):
-    """Return what stands at the axes, as LaTeX."""
-    return [f"{axis}\\ \\text{{({style.pretty_unit(unit)})}}" for axis in "xyz"]
 
 
 def _camera(points, upright):
