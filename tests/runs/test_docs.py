@@ -1,5 +1,6 @@
 """Every command and every piece of Python in the README and docs/ runs, as printed."""
 
+import csv
 import os
 import re
 import subprocess
@@ -7,6 +8,7 @@ import sys
 from itertools import groupby
 from pathlib import Path
 
+import numpy as np
 import pytest
 from scenes import ROOT
 
@@ -22,6 +24,7 @@ SLOW = (
     "large",
     "rest",
 )  # minutes where the machine is not quiet; and below, the tutorial
+PROJECTS = ("two-flagella", "ring-buckling")  # whose numbers are looked at too
 BLOCK = re.compile(r"(?:<!-- (?P<mark>[\w: ]+) -->\n)?```(?P<kind>\w+)\n(?P<text>.*?)```", re.S)
 LINK = re.compile(r"\]\((?!https?:)([^)]+)\)")
 
@@ -40,7 +43,7 @@ def blocks(page, install=False):
 CODE = [
     pytest.param(page, marks=[pytest.mark.long] * (page.stem in SLOW))
     for page in PAGES
-    if blocks(page) and page.stem != "tutorial"
+    if blocks(page) and page.stem not in ("tutorial", *PROJECTS)
 ]
 
 
@@ -73,6 +76,46 @@ def test_a_page_of_the_docs_runs_in_an_empty_folder(page, tmp_path):
     for name in ("configs", "docs", "benchmarks"):
         (tmp_path / name).symlink_to(ROOT / name)
     run(script(blocks(page)), tmp_path)
+
+
+@pytest.mark.long
+@pytest.mark.compiled
+def test_two_flagella_from_nothing_to_the_numbers_of_the_page(tmp_path):
+    run(script(blocks(ROOT / "docs" / "two-flagella.md")), tmp_path)
+    pair, alone = (_summary(tmp_path / name / "summary.csv") for name in ("pair", "alone"))
+    speeds = [*_column(pair, "left.speed"), *_column(alone, "left.speed")]
+    assert speeds == pytest.approx([6.98, 11.7, 16.6, 9.82], rel=5e-3)  # as the page prints them
+    powers = [*_column(pair, "left.power"), *_column(alone, "left.power")]
+    assert powers == pytest.approx([2.832, 3.093, 3.409, 3.056], rel=5e-4)
+    for picture in ("speed.png", "flagella.png", "shapes.png"):
+        assert (tmp_path / picture).stat().st_size > 10_000
+
+
+@pytest.mark.long
+@pytest.mark.compiled
+def test_the_ring_buckles_between_the_twists_of_the_page(tmp_path):
+    run(script(blocks(ROOT / "docs" / "ring-buckling.md")), tmp_path)
+    table = _summary(tmp_path / "writhe" / "summary.csv")
+    writhe = dict(zip(_column(table, "strain_twist.2"), _column(table, "ring.writhe"), strict=True))
+    below, above = (w for w in writhe if w < 3**0.5 / 2.5), (w for w in writhe if w > 3**0.5 / 2.5)
+    assert all(abs(writhe[w]) < 1e-9 for w in below)
+    assert [writhe[w] for w in above] == pytest.approx(
+        [-0.822, -0.848, -0.880, -0.982, -1.155], abs=1e-3
+    )
+    assert abs(np.array(_column(table, "ring.link"))).max() < 1e-9
+    assert not any(_column(table, "growing_modes"))
+
+
+def _summary(path):
+    """Return the rows of a sweep's summary."""
+    with path.open(encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def _column(rows, name):
+    """Return the numbers of a column by what its head has before the unit, or by its end."""
+    head = next(h for h in rows[0] if h.partition(" (")[0].endswith(name))
+    return [float(row[head]) for row in rows]
 
 
 @pytest.mark.compiled
@@ -123,6 +166,13 @@ def test_links_lead_somewhere(page):
         assert found.exists(), link
         if anchor:
             assert f"#{anchor}" in {f"#{_anchor(line)}" for line in found.read_text().splitlines()}
+
+
+def test_the_list_of_pages_is_the_folder():
+    """The site's navigation is made of it."""
+    listed = set(re.findall(r"\]\(([\w/-]+\.md)\)", _text("docs/README.md")))
+    found = {p.relative_to(ROOT / "docs").as_posix() for p in (ROOT / "docs").rglob("*.md")}
+    assert listed == found - {"README.md"}
 
 
 def _anchor(line):

@@ -32,7 +32,9 @@ def test_a_notebook_runs_in_an_empty_folder(path, tmp_path):
     notebook = nbformat.read(path, as_version=4)
     nbformat.validate(notebook)
     kernel = {**os.environ, "MPLBACKEND": "module://matplotlib_inline.backend_inline"}
-    client = nbclient.NotebookClient(notebook, timeout=None, resources={"metadata": {"path": str(tmp_path)}})
+    client = nbclient.NotebookClient(
+        notebook, timeout=None, resources={"metadata": {"path": str(tmp_path)}}
+    )
     client.execute(env=kernel)
     shown = [out for cell in notebook.cells for out in cell.get("outputs", ())]
     pictures = [out for out in shown if "image/png" in out.get("data", {})]
