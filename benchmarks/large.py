@@ -12,6 +12,7 @@ VISCOSITY = 0.7
 SIZES, QUICK = (1000, 10_000, 100_000, 1_000_000), (1000, 10_000)
 ACCURACIES, QUICK_ACCURACIES = (1e-3, 1e-5, 1e-7), (1e-3, 1e-5)
 EVERY = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)  # of the picture of error against cost
+FEW = (60, 90, 130, 200, 300, 450, 700, 1000, 1500, 2200, 3300)  # M among which it begins to pay
 TARGETS = 300  # at which the exact sum is computed and timed
 COLUMNS = {
     "scene": "scene",
@@ -25,6 +26,12 @@ COLUMNS = {
     "prepare": "lists and measuring, ms",
     "near": "pairs a point",
     "bytes": "bytes a point",
+}
+EVEN = {
+    "scene": "scene",
+    "accuracy": "asked",
+    "alone": "pays from M",
+    "lists": "with lists for every evaluation",
 }
 
 
@@ -56,6 +63,9 @@ def main(quick, repeats, points, names, threads, above, flat):
             rows += [measure(name, size, a, repeats, above, flat) for a in accuracies]
     picture = [measure("coil, 25 epsilon", 10_000, a, repeats, above, flat) for a in EVERY]
     tables = [Table("Fast sums", COLUMNS, rows), Table("Error against cost", COLUMNS, picture)]
+    curves = [name for name in names or SCENES if name != "suspension"]
+    even = [break_even(name, a, repeats, above, flat) for name in curves for a in accuracies]
+    tables.append(Table("Break-even", EVEN, even))
     return tables, lambda *axes: draw(rows, picture, *axes)
 
 
@@ -103,6 +113,17 @@ def measure(name, size, accuracy, repeats, above=None, flat=1.0):
         "exact": Spread.of(whole, 1e3), "u": u, "w": w, "lists": 1e3 * lists,
         "prepare": 1e3 * prepare, "near": fast.pairs / size, "bytes": tables.nbytes / size,
     }  # fmt: skip
+
+
+def break_even(name, accuracy, repeats, above, flat):
+    """Return from which of some M on a fast sum takes less time, without lists and with them."""
+    found = {"scene": name, "accuracy": accuracy}
+    for size in FEW:
+        row = measure(name, size, accuracy, repeats, above, flat)
+        for key, more in (("alone", 0.0), ("lists", row["prepare"])):
+            if key not in found and row["fast"].median + more < row["exact"].median:
+                found[key] = size
+    return found
 
 
 def draw(rows, picture, left, right):
