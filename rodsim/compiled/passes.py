@@ -52,7 +52,7 @@ def remaining(size, c, memory, y, velocities, f0, g, weights, first, count, f1, 
     """
     h3 = size * size * size
     scale = 1.0 / (h3 * (1.0 / 12.0 + memory * c))
-    n = count.sum()
+    n = first[-1] + count[-1]
     for i in range(np.uint64(y.size)):
         f1[i] = velocities[i]
     rotation_vector_rate(y[3 * n : 6 * n].reshape(3, n), f1[3 * n : 6 * n].reshape(3, n))
