@@ -25,3 +25,9 @@ with rodsim.open_trajectory("out.h5") as run:
     assert_type(run.frames, int)
 
 assert_type(rodsim.analysis.writhe(run.position[-1], closed=False), float)
+
+points, forces = [[0.0, 0.0, 0.5]], np.array([[0.0, 0.0, 2.0]])  # what NumPy can make an array of
+linear, angular = rodsim.velocity(points, points, forces, np.zeros((1, 3)), 0.3, np.float64(1e-3))
+assert_type(linear, np.ndarray)
+assert_type(angular, np.ndarray | None)
+assert_type(rodsim.pressure(points, points, forces, epsilon=0.3, wall=None), np.ndarray)

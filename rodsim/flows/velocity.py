@@ -4,6 +4,10 @@ For notebooks and tests: arrays are (n, 3), one row per point. A run calls the k
 ``free.py`` and ``wall.py`` on its own (3, n) arrays.
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from rodsim.compiled.threads import computing
@@ -12,23 +16,26 @@ from rodsim.flows import free
 from rodsim.flows.blobs import BLOBS
 from rodsim.flows.free import pressure_kernel, velocity_kernel
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
 __all__ = ["BLOBS", "pressure", "pressure_kernel", "velocity", "velocity_kernel"]
 
 
 def velocity(
-    targets,
-    sources,
-    forces,
-    torques,
-    epsilon,
-    viscosity,
+    targets: ArrayLike,
+    sources: ArrayLike,
+    forces: ArrayLike,
+    torques: ArrayLike,
+    epsilon: float,
+    viscosity: float,
     *,
-    blob="algebraic7",
-    angular=True,
-    wall=None,
-    accuracy=None,
-    rods=None,
-):
+    blob: str = "algebraic7",
+    angular: bool = True,
+    wall: float | None = None,
+    accuracy: float | None = None,
+    rods: ArrayLike | None = None,
+) -> tuple[np.ndarray, np.ndarray | None]:
     """Return linear and angular velocity at ``targets``, eqs. (32), (33), (61), (66).
 
     Parameters
@@ -76,7 +83,16 @@ def velocity(
     return out[:3].T.copy(), (out[3:].T.copy() if angular else None)
 
 
-def pressure(targets, sources, forces, epsilon, *, blob="algebraic7", wall=None, torques=None):
+def pressure(
+    targets: ArrayLike,
+    sources: ArrayLike,
+    forces: ArrayLike,
+    epsilon: float,
+    *,
+    blob: str = "algebraic7",
+    wall: float | None = None,
+    torques: ArrayLike | None = None,
+) -> np.ndarray:
     """Return the pressure (T,) at ``targets``, p = sum (g.r) Q, eq. (62).
 
     Torques add nothing in free space. At a wall they do: there ``torques`` must be given. Other
