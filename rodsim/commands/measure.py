@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from rodsim.commands.common import STILLS, output_argument, say, say_written, written_path
+from rodsim.commands.sheet import sheet_options
 
 
 # fmt: off
@@ -24,8 +25,10 @@ from rodsim.commands.common import STILLS, output_argument, say, say_written, wr
               help="Write the table to a file as well.")
 @click.option("--plot", "plot_path", type=click.Path(path_type=Path, dir_okay=False),
               help="Draw it over time (needs rodsim[plot]).")
+@sheet_options
 @click.option("-q", "--quiet", is_flag=True, help="No progress, no message.")
-def measure(output, names, own, rods, every, period, csv_path, plot_path, quiet):
+def measure(output, names, own, rods, every, period, csv_path, plot_path, size, dpi,
+            title, quiet):
     # fmt: on
     """Measure quantities over time, such as speed, writhe, power: of each rod, from the file.
 
@@ -53,9 +56,10 @@ def measure(output, names, own, rods, every, period, csv_path, plot_path, quiet)
         say_written(csv_path, there, quiet)
     if plot_path:
         from rodsim.plotting.curves import plot_curves
+        from rodsim.plotting.style import Sheet
 
         there = plot_path.exists()
-        plot_curves({"": table}, plot_path)
+        plot_curves({"": table}, plot_path, Sheet(size, dpi, title))
         say_written(plot_path, there, quiet)
 
 
