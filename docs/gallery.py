@@ -170,7 +170,7 @@ SHOWN = {
     "two_swimmers": (bodies_swim, "-n 3 --view 3d"),
     "rotating_helix": (helix_pulls, "-n 2 --view 3d"),
     "suspension": (aligns, "-n 2 --view 3d"),
-    "long_coil": (energy, "-n 2 --view 3d"),
+    "long_coil": (energy, "-n 2 --view 3d --style line"),
 }
 COMMAND = {"michell_ring": "rest --saddle"}  # instead of run
 
