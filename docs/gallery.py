@@ -154,6 +154,7 @@ SHOWN = {
     "michell_ring": (grows, "-n 1 --view 3d"),
     "plasmid": (winds, "-n 4"),
     "plectoneme": (winds, "-n 4"),
+    "trefoil": (winds, "-n 2 --view 3d"),
     "two_rods_crossing": (touches, "-n 3 --view 3d"),
     "traced_filament": (energy, "-n 4"),
     "tethered_pair": (pulls_ends, "-n 4"),
@@ -172,7 +173,7 @@ SHOWN = {
     "suspension": (aligns, "-n 2 --view 3d"),
     "long_coil": (energy, "-n 2 --view 3d --style line"),
 }
-COMMAND = {"michell_ring": "rest --saddle"}  # instead of run
+COMMAND = {"michell_ring": "rest --saddle", "trefoil": "rest"}  # instead of run
 
 
 def sentence(name: str) -> str:
