@@ -111,13 +111,12 @@ LANES = 8  # sources come in multiples of it, the rest without loads: what is le
 
 
 @summing
-def room_for(count, wall):
-    """Return places (3, n) and loads (6, n) for so many sources; the last few, on the wall if there
-    is one, without loads."""
+def room_for(count):
+    """Return places (3, n) and loads (6, n) for so many sources, the last few without loads."""
     n = (count + LANES - 1) // LANES * LANES
     places, loads = np.empty((3, n)), np.empty((6, n))
     for k in range(count, n):
-        places[0, k], places[1, k], places[2, k] = 0.0, 0.0, wall
+        places[0, k] = places[1, k] = places[2, k] = 0.0
         for c in range(6):
             loads[c, k] = 0.0
     return places, loads

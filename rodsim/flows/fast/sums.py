@@ -60,9 +60,9 @@ def _gather(nodes, partners, first, count, places, loads, to_places, to_loads, a
 
 
 @unsigned
-def _sources(nodes, partners, first, count, places, loads, wall):
+def _sources(nodes, partners, first, count, places, loads):
     """Return places (3, n) and loads (6, n) of some arcs: of their points, or their proxies."""
-    to_places, to_loads = room_for(_total(nodes, partners, count), wall)
+    to_places, to_loads = room_for(_total(nodes, partners, count))
     _gather(nodes, partners, first, count, places, loads, to_places, to_loads, 0)
     return to_places, to_loads
 
@@ -104,7 +104,7 @@ def _fast_sum(walled, blob, planar):
                 for k in range(shares[share], shares[share + 1]):
                     a = order[k]
                     others = partners[begins[a] : begins[a + 1]]
-                    sources, theirs = _sources(nodes, others, first, count, at, g, wall)
+                    sources, theirs = _sources(nodes, others, first, count, at, g)
                     for i in range(nodes[a, first], nodes[a, first] + nodes[a, count]):
                         x, y, z = at[0, i], at[1, i], at[2, i]
                         if walled:
@@ -139,7 +139,7 @@ def _group_sum(walled, blob, angular):
                 afar = far[far_begins[a] : far_begins[a + 1]]
                 close = near[near_begins[a] : near_begins[a + 1]]
                 count = _total(nodes, afar, PROXIES) + _total(nodes, close, COUNT)
-                sources, g = room_for(count, wall)
+                sources, g = room_for(count)
                 end = _gather(nodes, afar, START, PROXIES, places, shared, sources, g, 0)
                 _gather(nodes, close, LO, COUNT, points, loads, sources, g, end)
                 for t in range(members[a], members[a + 1]):
