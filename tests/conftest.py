@@ -11,16 +11,8 @@ prepare()  # threads and cache as the command has them; before Numba is imported
 
 import numba  # noqa: E402
 
-from rodsim.compiled.cache import save_in_turn  # noqa: E402
-from rodsim.run.warmup import saving  # noqa: E402
-
 sys.path.insert(0, str(Path(__file__).parent))
 sys.path.append(str(Path(__file__).parent.parent / "benchmarks"))  # the rival, and the theory
-
-
-def pytest_configure(config):
-    if hasattr(config, "workerinput"):  # of pytest-xdist: several share the cache
-        save_in_turn(saving)
 
 
 def pytest_collection_modifyitems(config, items):

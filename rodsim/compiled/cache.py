@@ -6,7 +6,9 @@ only when it is whole, so one that does not end as a pickle was damaged since.
 
 import os
 import warnings
+from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
+from hashlib import sha256
 from pathlib import Path
 
 import numba
@@ -20,6 +22,7 @@ from rodsim.compiled.settings import without_scipy
 from rodsim.errors import FileError
 
 END = b"."  # of every pickle
+LOCK = ".saving"
 
 
 class _Cache(FunctionCache):
@@ -38,6 +41,37 @@ class _Cache(FunctionCache):
                 import numba.np.arraymath  # noqa: F401  (who compiles looks for SciPy there)
             return found
 
+    def save_overload(self, sig, data):
+        """Save the compiled function of a signature, if no other process has meanwhile.
+
+        One at a time: of two that add to an index at once, what the first has added is lost, or
+        both take the same name for the code of two functions.
+        """
+        with self._guard_against_spurious_io_errors():
+            self._impl.locator.ensure_cache_path()
+            with _alone(Path(self.cache_path)):
+                if not self._holds(self._index_key(sig, data.codegen)):
+                    self._save_overload(sig, data)
+
+    def _holds(self, key):
+        try:
+            return self._cache_file.load(key) is not None
+        except Exception:  # damaged: written anew
+            return False
+
+
+@contextmanager
+def _alone(folder):
+    """Hold a lock on a folder of compiled code, where the system has locks and lets us."""
+    with ExitStack() as held:
+        with suppress(ImportError, OSError):
+            import fcntl
+
+            flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW
+            lock = held.enter_context(os.fdopen(os.open(folder / LOCK, flags, 0o600), "w"))
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
 
 def cached_njit(*signature, **options):
     """Return Numba's ``njit`` with its cache, or without where nothing can be kept.
@@ -48,7 +82,7 @@ def cached_njit(*signature, **options):
         return cached_njit(**options)(signature[0])
 
     def decorate(function):
-        made = njit(**options)(function)
+        made = njit(**options)(_named_apart(function))
         if made is function:  # the JIT is off
             return made
         if keeps(function):
@@ -64,11 +98,34 @@ def cached_njit(*signature, **options):
 
 def cached_cfunc(function, signature, **options):
     """Return what Numba's ``cfunc`` makes of a function, with its cache, as :func:`cached_njit`."""
-    made = CFunc(function, normalize_signature(signature), {}, options)
+    made = CFunc(_named_apart(function), normalize_signature(signature), {}, options)
     if keeps(function):
         made._cache = _Cache(function)
     made.compile()
     return made
+
+
+def _named_apart(function):
+    """Give a function that another one has made a name of its own, from what it was made with.
+
+    In machine code a function is known by its name, the types of its arguments and a number that
+    counts from 0 in each process. Of two that one factory has made, compiled in two processes and
+    read from the cache by a third, LLVM would take the first for both.
+    """
+    made_with = [_told(cell.cell_contents) for cell in function.__closure__ or ()]
+    if made_with:
+        digest = sha256(" ".join(made_with).encode()).hexdigest()[:8]
+        function.__qualname__ = f"{function.__qualname__}_{digest}"
+    return function
+
+
+def _told(value):
+    if isinstance(value, tuple | list):
+        return f"({', '.join(map(_told, value))})"
+    function = getattr(value, "py_func", value)
+    if callable(function) and hasattr(function, "__qualname__"):
+        return f"{function.__module__}.{function.__qualname__}"
+    return repr(value)
 
 
 _seen: dict[str, bool] = {}
@@ -121,29 +178,3 @@ def _warn_once():
         "folder that can be written",
         stacklevel=2,
     )
-
-
-def save_in_turn(lock) -> None:
-    """Let Numba save nothing but under ``lock()``, and nothing that is there by then.
-
-    Two processes that compile at once would else both add to an index, and what the first has
-    added is lost, or take the same name for the code of two functions.
-    """
-    from numba.core.caching import Cache
-
-    save = Cache.save_overload
-
-    def save_overload(cache, signature, compiled):
-        with lock():
-            if not _has(cache, signature, compiled):
-                save(cache, signature, compiled)
-
-    Cache.save_overload = save_overload
-
-
-def _has(cache, signature, compiled):
-    try:
-        key = cache._index_key(signature, compiled.codegen)
-        return cache._cache_file.load(key) is not None
-    except Exception:  # damaged, or another Numba's: written anew
-        return False

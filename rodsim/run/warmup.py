@@ -138,11 +138,11 @@ def _clear(folder):
 
 
 @contextmanager
-def _alone(folder, lock="lock"):
+def _alone(folder):
     """Hold a lock that the system takes back should this process die; none where it has none."""
     folder.mkdir(parents=True, exist_ok=True)
     flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
-    with os.fdopen(os.open(folder / lock, flags, 0o600), "w") as lock:
+    with os.fdopen(os.open(folder / "lock", flags, 0o600), "w") as lock:
         with suppress(ImportError, OSError):
             import fcntl
 
@@ -166,8 +166,7 @@ def main(kernels) -> None:
         try:
             _compile([MACHINE, *kernels])
         finally:
-            with saving():  # it is writing nothing now
-                helper.kill()
+            helper.kill()
 
 
 def _compile(names):
@@ -175,17 +174,10 @@ def _compile(names):
     from rodsim.compiled.settings import prepare
 
     prepare()
-    from rodsim.compiled.cache import save_in_turn
     from rodsim.compiled.kernels import address_of
 
-    save_in_turn(saving)
     for name in names:
         address_of(name) if ":" in name else import_module(name)
-
-
-def saving():
-    """Hold the lock on what is written to the cache."""
-    return _alone(Path(os.environ["NUMBA_CACHE_DIR"]), "saving")
 
 
 if __name__ == "__main__":

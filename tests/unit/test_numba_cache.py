@@ -56,3 +56,62 @@ def test_what_cannot_be_kept_is_compiled_for_this_process():
     with pytest.warns(UserWarning, match="set NUMBA_CACHE_DIR to a folder that can be written"):
         kernel = cached_njit("float64(float64)", error_model="numpy")(namespace["scaled"])
     assert kernel(3.0) == 7.5
+
+
+FACTORY = """
+from rodsim.compiled.cache import cached_cfunc, cached_njit
+
+def scaled_by(factor):
+    @cached_njit(error_model="numpy")
+    def scaled(x):
+        y = 0.0
+LINES
+        return factor * x[0] + 0.0 * y
+    return scaled
+
+double, triple = scaled_by(2.0), scaled_by(3.0)
+
+def doubled(x, out):
+    out[0] = double(x)
+
+def tripled(x, out):
+    out[0] = triple(x)
+
+def made(function):
+    return cached_cfunc(function, "void(float64[::1], float64[::1])").address
+"""
+TOO_LONG_TO_BE_INLINED = "\n".join(" " * 8 + f"y = y * x[1] + x[{i % 3}]" for i in range(99))
+CALLED = """
+import numpy as np
+import kernels
+from numba import njit, types
+from rodsim.compiled.flags import _jump, intrinsic
+
+@intrinsic
+def call_at(typing, address, x, out):
+    return types.void(types.int64, x, out), _jump
+
+@njit
+def call(address, x, out):
+    call_at(address, x, out)
+
+for function in kernels.doubled, kernels.tripled:
+    out = np.zeros(1)
+    call(kernels.made(function), np.array([7.0, 0.3, 0.2]), out)
+    print(out[0])
+"""
+
+
+@pytest.mark.compiled
+def test_functions_of_one_factory_that_two_processes_compiled_are_told_apart(tmp_path):
+    """Both are the first that their process compiles, so the number that Numba gives is the same."""
+    (tmp_path / "kernels.py").write_text(FACTORY.replace("LINES", TOO_LONG_TO_BE_INLINED))
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    made = "import kernels; kernels.made(kernels.{})"
+    for code in made.format("doubled"), made.format("tripled"), CALLED:
+        done = subprocess.run(
+            [sys.executable, "-c", code],
+            cwd=tmp_path, env=environment, capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+    assert done.stdout == "14.0\n21.0\n"
