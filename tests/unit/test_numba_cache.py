@@ -104,7 +104,7 @@ for function in kernels.doubled, kernels.tripled:
 
 @pytest.mark.compiled
 def test_functions_of_one_factory_that_two_processes_compiled_are_told_apart(tmp_path):
-    """Both are the first that their process compiles, so the number that Numba gives is the same."""
+    """Both are the first that their process compiles: the number that Numba gives is the same."""
     (tmp_path / "kernels.py").write_text(FACTORY.replace("LINES", TOO_LONG_TO_BE_INLINED))
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
     made = "import kernels; kernels.made(kernels.{})"
