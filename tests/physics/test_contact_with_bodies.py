@@ -185,6 +185,7 @@ def test_a_stick_that_lies_on_a_wall_counts_as_its_middle_line_and_its_radius():
     assert loads[3:] == pytest.approx([0, 0, 0], abs=1e-10)
 
 
+@pytest.mark.compiled
 def test_what_is_pressed_comes_to_rest_where_forces_balance():
     """A ball drawn onto a rod that is held, one pressed on the wall, two drawn to each other."""
     F, held = 1.7, {"hold": "hinged"}
