@@ -18,6 +18,7 @@ from rodsim.rest.solve import find_rest
 from rodsim.rest.stability import stability_of
 from rodsim.rest.start import start_from_case
 
+pytestmark = pytest.mark.compiled  # seconds each, minutes without the JIT
 MODULI = {"bending": 1.3, "twisting": 0.9, "shear": 52.0, "stretch": 52.0}
 CLAMPED, TO_CELL = {"hold": "clamped"}, {"hold": "clamped", "to": "cell"}
 HOOK = {"hold": "clamped", "to": "cell", "hook": {"bending": 0.83, "twisting": 0.6}}
@@ -58,7 +59,6 @@ def free_change(forces, seed=1):
     return change
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(("share", "growing"), [(0.98, 0), (1.02, 2)])
 def test_a_ball_on_a_column_buckles_where_theory_has_it(share, growing):
     """y'' = -k^2 (y - delta) under a dead load at L + R, rigid from L on: k R tan(k L) = 1.
