@@ -6,7 +6,7 @@ only when it is whole, so one that does not end as a pickle was damaged since.
 
 import os
 import warnings
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, suppress
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
@@ -18,6 +18,7 @@ from numba.core.ccallback import CFunc
 from numba.core.runtime import rtsys
 from numba.core.sigutils import normalize_signature
 
+from rodsim.compiled.folder import alone
 from rodsim.compiled.settings import without_scipy
 from rodsim.errors import FileError
 
@@ -49,7 +50,9 @@ class _Cache(FunctionCache):
         """
         with self._guard_against_spurious_io_errors():
             self._impl.locator.ensure_cache_path()
-            with _alone(Path(self.cache_path)):
+            with ExitStack() as held:
+                with suppress(OSError):  # not ours to lock
+                    held.enter_context(alone(Path(self.cache_path) / LOCK))
                 if not self._holds(self._index_key(sig, data.codegen)):
                     self._save_overload(sig, data)
 
@@ -58,19 +61,6 @@ class _Cache(FunctionCache):
             return self._cache_file.load(key) is not None
         except Exception:  # damaged: written anew
             return False
-
-
-@contextmanager
-def _alone(folder):
-    """Hold a lock on a folder of compiled code, where the system has locks and lets us."""
-    with ExitStack() as held:
-        with suppress(ImportError, OSError):
-            import fcntl
-
-            flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW
-            lock = held.enter_context(os.fdopen(os.open(folder / LOCK, flags, 0o600), "w"))
-            fcntl.flock(lock, fcntl.LOCK_EX)
-        yield
 
 
 def cached_njit(*signature, **options):

@@ -3,7 +3,7 @@
 import errno
 import os
 import tempfile
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 OTHERS_MAY_WRITE = 0o022
@@ -31,6 +31,22 @@ def writable_folder(folder: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryFile(dir=folder):
         return folder
+
+
+@contextmanager
+def alone(lock: Path):
+    """Hold a lock that the system takes back should this process die; none where it has none.
+
+    Raises OSError where the file cannot be written, or is a link that waits under its name.
+    """
+    lock.parent.mkdir(parents=True, exist_ok=True)
+    flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
+    with os.fdopen(os.open(lock, flags, 0o600), "w") as held:
+        with suppress(ImportError, OSError):
+            import fcntl
+
+            fcntl.flock(held, fcntl.LOCK_EX)
+        yield
 
 
 def _mode_of_ours(folder):

@@ -140,20 +140,13 @@ def load_tbb() -> bool:
 @cache
 def fingerprint() -> str:
     """Return a name for this installation: its place (Numba's cache has it), source, processor."""
-    digest = hashlib.sha256(f"{rodsim.__version__} {rodsim.__file__} {_source()}".encode())
+    digest = hashlib.sha256(f"{rodsim.__version__} {rodsim.__file__}".encode())
+    for source in sorted(Path(rodsim.__file__).parent.rglob("*.py")):
+        digest.update(source.read_bytes())
     versions = [version(name) for name in COMPILERS]
     asked = [os.environ.get(name) for name in ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES")]
     digest.update(f"{versions} {sys.version} {platform.machine()} {_processor()} {asked}".encode())
     return digest.hexdigest()[:16]
-
-
-@cache
-def _source() -> str:
-    """Return a digest of rodsim's source, as it was when this process first asked."""
-    digest = hashlib.sha256()
-    for source in sorted(Path(rodsim.__file__).parent.rglob("*.py")):
-        digest.update(source.read_bytes())
-    return digest.hexdigest()
 
 
 @cache

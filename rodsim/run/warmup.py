@@ -12,18 +12,19 @@ import json
 import os
 import sys
 import tempfile
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 from time import perf_counter
 from zlib import crc32
 
+from rodsim.compiled.folder import alone
 from rodsim.compiled.kernels import jit_is_off
 from rodsim.compiled.settings import fingerprint, why_not_kept
 from rodsim.processes import this_rodsim
 from rodsim.progress import SECONDS_BETWEEN_LINES
 
-LIST = "compiled.json"
+LIST, LOCK = "compiled.json", "lock"
 MACHINE = "rodsim.run.machine"  # importing it compiles everything but the parts
 BACKWARDS = "--backwards"
 
@@ -51,7 +52,7 @@ def ensure_compiled(scene, say) -> float:
         return 0.0
     say(compiling)
     start = perf_counter()
-    with suppress(OSError), _alone(folder):  # where nothing can be kept, the run itself compiles
+    with suppress(OSError), alone(folder / LOCK):  # where nothing can be kept, the run compiles
         if not is_compiled(folder, kind):
             if _is_ours(folder, kind) and not _undamaged(folder):
                 _clear(folder)
@@ -135,19 +136,6 @@ def _clear(folder):
     for pattern in (LIST, "*.nbi", "*.nbc"):
         for file in folder.rglob(pattern):
             file.unlink(missing_ok=True)
-
-
-@contextmanager
-def _alone(folder):
-    """Hold a lock that the system takes back should this process die; none where it has none."""
-    folder.mkdir(parents=True, exist_ok=True)
-    flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
-    with os.fdopen(os.open(folder / "lock", flags, 0o600), "w") as lock:
-        with suppress(ImportError, OSError):
-            import fcntl
-
-            fcntl.flock(lock, fcntl.LOCK_EX)
-        yield
 
 
 def main(kernels) -> None:

@@ -8,6 +8,7 @@ import pytest
 from scenes import load
 
 from rodsim.compiled import settings
+from rodsim.compiled.folder import alone
 from rodsim.run import warmup
 from rodsim.run.warmup import LIST, is_compiled, note_compiled
 from rodsim.scene.build import build_scene
@@ -76,7 +77,7 @@ def test_links_that_wait_under_the_names_of_the_cache_are_not_followed(folder, t
     victim.write_text("precious")
     (folder / "lock").symlink_to(victim)
     (folder / f"{LIST}.{os.getpid()}").symlink_to(victim)
-    with pytest.raises(OSError, match="symbolic link"), warmup._alone(folder):
+    with pytest.raises(OSError, match="symbolic link"), alone(folder / warmup.LOCK):
         raise AssertionError("the lock was taken")
     note_compiled(folder, PLANE)
     assert victim.read_text() == "precious"
@@ -141,7 +142,6 @@ def test_another_processor_source_or_version_has_a_cache_of_its_own(tmp_path, mo
     source.parent.mkdir()
     source.write_text("here")
     monkeypatch.setattr(settings.rodsim, "__file__", str(source))
-    monkeypatch.setattr(settings, "_source", settings._source.__wrapped__)
     folders = [settings.cache_folder()]
     source.write_text("there")
     folders.append(settings.cache_folder())
