@@ -37,39 +37,56 @@ EIGHT_PI = 8.0 * math.pi
 
 
 @inline
+def add_pair(blob, planar, angular, r, g, m, e2, sums):
+    """Return ``sums``, 8 pi mu (u, w), and what a source adds that has g, m and is r away.
+
+    ``blob``, ``planar``, ``angular`` are constants that choose what is compiled.
+    """
+    rx, ry, rz = r
+    gx, gy, gz = g
+    mx, my, mz = m
+    ux, uy, uz, wx, wy, wz = sums
+    r2 = ry * ry + rz * rz
+    gr = gy * ry + gz * rz
+    if not planar:
+        r2 += rx * rx
+        gr += gx * rx
+    inverse = inverse_distance(r2, e2)
+    h1, h2, q = stokeslet_scalars(blob, inverse, e2)
+    along = h2 * gr
+    q *= 0.5
+    uy += gy * h1 + along * ry - q * (mx * rz)
+    uz += gz * h1 + along * rz + q * (mx * ry)
+    if not planar:
+        ux += gx * h1 + along * rx + q * (my * rz - mz * ry)
+        uy += q * (mz * rx)
+        uz -= q * (my * rx)
+    if angular:
+        d1, d2 = dipole_scalars(blob, inverse, e2)
+        d1 *= 0.25
+        wx += q * (gy * rz - gz * ry) + d1 * mx
+        if not planar:
+            axial = 0.25 * d2 * (mx * rx + my * ry + mz * rz)
+            wx += axial * rx
+            wy += q * (gz * rx - gx * rz) + d1 * my + axial * ry
+            wz += q * (gx * ry - gy * rx) + d1 * mz + axial * rz
+    return ux, uy, uz, wx, wy, wz
+
+
+@inline
 def add_up(blob, planar, angular, x, y, z, sources, loads, e2):
-    """Return 8 pi mu (u, w) at one target, from all sources; constants choose the sum."""
-    ux, uy, uz, wx, wy, wz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    """Return 8 pi mu (u, w) at one target, from all sources; constants choose the sum.
+
+    The last bits depend on the order in which a source is read.
+    """
+    sums = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     for k in range(sources.shape[1]):
         ry, rz = y - sources[1, k], z - sources[2, k]
         gy, gz, mx = loads[1, k], loads[2, k], loads[3, k]
-        r2 = ry * ry + rz * rz
-        gr = gy * ry + gz * rz
-        if not planar:
-            rx = x - sources[0, k]
-            gx, my, mz = loads[0, k], loads[4, k], loads[5, k]
-            r2 += rx * rx
-            gr += gx * rx
-        inverse = inverse_distance(r2, e2)
-        h1, h2, q = stokeslet_scalars(blob, inverse, e2)
-        along = h2 * gr
-        q *= 0.5
-        uy += gy * h1 + along * ry - q * (mx * rz)
-        uz += gz * h1 + along * rz + q * (mx * ry)
-        if not planar:
-            ux += gx * h1 + along * rx + q * (my * rz - mz * ry)
-            uy += q * (mz * rx)
-            uz -= q * (my * rx)
-        if angular:
-            d1, d2 = dipole_scalars(blob, inverse, e2)
-            d1 *= 0.25
-            wx += q * (gy * rz - gz * ry) + d1 * mx
-            if not planar:
-                axial = 0.25 * d2 * (mx * rx + my * ry + mz * rz)
-                wx += axial * rx
-                wy += q * (gz * rx - gx * rz) + d1 * my + axial * ry
-                wz += q * (gx * ry - gy * rx) + d1 * mz + axial * rz
-    return ux, uy, uz, wx, wy, wz
+        rx, gx, my, mz = x - sources[0, k], loads[0, k], loads[4, k], loads[5, k]
+        r, g, m = (rx, ry, rz), (gx, gy, gz), (mx, my, mz)
+        sums = add_pair(blob, planar, angular, r, g, m, e2, sums)
+    return sums
 
 
 def _sum(blob, planar, angular):

@@ -30,15 +30,22 @@ from rodsim.flows.blobs import dipole_scalars, image_scalars, stokeslet_scalars
 
 
 @inline
-def _inverse_distances(x, y, z, sources, wall_height, e2, inverses):
-    """Fill ``inverses`` with 1/R and 1/R* of all sources: one division for both."""
+def inverse_distances(r, zh, e2):
+    """Return 1/R and 1/R* of one pair: one division for both."""
+    rx, ry, d = r
+    r2 = rx * rx + ry * ry + d * d + e2
+    direct, image = math.sqrt(r2), math.sqrt(r2 + 4.0 * zh)
+    both = 1.0 / (direct * image)
+    return image * both, direct * both
+
+
+@inline
+def _all_inverse_distances(x, y, z, sources, wall_height, e2, inverses):
+    """Fill ``inverses`` with 1/R and 1/R* of all sources."""
     for k in range(sources.shape[1]):
         h = sources[2, k] - wall_height
-        rx, ry, d = x - sources[0, k], y - sources[1, k], z - h
-        r2 = rx * rx + ry * ry + d * d + e2
-        direct, image = math.sqrt(r2), math.sqrt(r2 + 4.0 * z * h)
-        both = 1.0 / (direct * image)
-        inverses[0, k], inverses[1, k] = image * both, direct * both
+        r = x - sources[0, k], y - sources[1, k], z - h
+        inverses[0, k], inverses[1, k] = inverse_distances(r, z * h, e2)
 
 
 @inline
@@ -59,54 +66,79 @@ def _torque_scalars(blob, inverse, image, zh, e2):
 
 
 @inline
+def add_pair(blob, planar, angular, r, z, h, g, m, inverses, e2, sums):
+    """Return ``sums`` and what a source adds that has g, m, is r away and at height h, target at z.
+
+    ``inverses`` is 1/R and 1/R*; ``sums`` is 8 pi mu (u, w) without its terms in v, and v. Of r,
+    the third component is d = z - h. Constants choose what is compiled.
+    """
+    # Products of vectors: g.r, a.r*, and mr = e3 . (m x r).
+    rx, ry, d = r
+    gx, gy, gz = g
+    mx, my, mz = m
+    ux, uy, uz, wx, wy, wz, vx, vy, vz = sums
+    s = z + h
+    ay, az = h * gy - mx, -h * gz
+    gr, ar, mr = gy * ry + gz * d, ay * ry + az * s, mx * ry
+    if not planar:
+        ax = h * gx + my
+        gr, ar, mr = gr + gx * rx, ar + ax * rx, mr - my * rx
+    # u, and v, which u and w share.
+    zh = z * h
+    inverse, image = inverses
+    h1, h2, q = _force_scalars(blob, inverse, image, zh, e2)
+    p, e, e1, _ = image_scalars(blob, image, e2)
+    along, back, c = h2 * gr, p * ar, zh * e1
+    uy += gy * h1 + along * ry - mx * (q * d - c * s)
+    uz += gz * h1 + along * d + (q - c) * mr
+    vy += e * ay + back * ry
+    vz += e * az + back * s
+    if not planar:
+        ux += gx * h1 + along * rx + my * (q * d - c * s) - mz * ry * (q + c)
+        uy += mz * rx * (q + c)
+        vx += e * ax + back * rx
+    # w but for v; s2 = r*^2, and mrho = m.r without the third component.
+    if angular:
+        d1, d2, kappa = _torque_scalars(blob, inverse, image, zh, e2)
+        e1 *= 0.5
+        s2, turn = ry * ry + d * d + 4.0 * zh, e1 * mr
+        if not planar:
+            s2 += rx * rx
+        own = d1 - kappa * s2 - e1 * (s * s) - c + e
+        wx += gy * (q * d + c * s) - gz * ry * (q - c) + turn * ry + own * mx
+        if not planar:
+            mrho = mx * rx + my * ry
+            axial, mirrored = d2 * (mrho + mz * d), kappa * (mrho - mz * s)
+            lead = axial + mirrored - e1 * (h * mz)
+            wx += lead * rx
+            wy += gz * rx * (q - c) - gx * (q * d + c * s) - turn * rx + own * my
+            wy += lead * ry
+            wz += (gx * ry - gy * rx) * (q + c) + axial * d + mirrored * s
+            wz += e1 * (z * mrho) + (d1 + kappa * s2 + c) * mz
+    return ux, uy, uz, wx, wy, wz, vx, vy, vz
+
+
+@inline
+def with_v(z, sums):
+    """Return 8 pi mu (u, w) from the ``sums`` of :func:`add_pair` at a target of height z."""
+    ux, uy, uz, wx, wy, wz, vx, vy, vz = sums
+    ux, uy, uz = ux - 2.0 * z * vx, uy - 2.0 * z * vy, uz - 2.0 * z * vz
+    return ux, uy, uz, wx + 2.0 * vy, wy - 2.0 * vx, wz
+
+
+@inline
 def add_up(blob, planar, angular, x, y, z, sources, loads, wall_height, e2):
     """Return 8 pi mu (u, w) at one target, from all sources; constants choose the sum."""
     z = z - wall_height
     inverses = np.empty((2, sources.shape[1]))
-    _inverse_distances(x, y, z, sources, wall_height, e2, inverses)
-    ux, uy, uz, wx, wy, wz, vx, vy, vz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    _all_inverse_distances(x, y, z, sources, wall_height, e2, inverses)
+    sums = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     for k in range(sources.shape[1]):
-        # Products of vectors: g.r, a.r*, and mr = e3 . (m x r).
         h = sources[2, k] - wall_height
-        ry, d, s = y - sources[1, k], z - h, z + h
+        ry, d = y - sources[1, k], z - h
         gy, gz, mx = loads[1, k], loads[2, k], loads[3, k]
-        ay, az = h * gy - mx, -h * gz
-        gr, ar, mr = gy * ry + gz * d, ay * ry + az * s, mx * ry
-        if not planar:
-            rx = x - sources[0, k]
-            gx, my, mz = loads[0, k], loads[4, k], loads[5, k]
-            ax = h * gx + my
-            gr, ar, mr = gr + gx * rx, ar + ax * rx, mr - my * rx
-        # u, and v, which u and w share.
-        zh, inverse, image = z * h, inverses[0, k], inverses[1, k]
-        h1, h2, q = _force_scalars(blob, inverse, image, zh, e2)
-        p, e, e1, _ = image_scalars(blob, image, e2)
-        along, back, c = h2 * gr, p * ar, zh * e1
-        uy += gy * h1 + along * ry - mx * (q * d - c * s)
-        uz += gz * h1 + along * d + (q - c) * mr
-        vy += e * ay + back * ry
-        vz += e * az + back * s
-        if not planar:
-            ux += gx * h1 + along * rx + my * (q * d - c * s) - mz * ry * (q + c)
-            uy += mz * rx * (q + c)
-            vx += e * ax + back * rx
-        # w but for v; s2 = r*^2, and mrho = m.r without the third component.
-        if angular:
-            d1, d2, kappa = _torque_scalars(blob, inverse, image, zh, e2)
-            e1 *= 0.5
-            s2, turn = ry * ry + d * d + 4.0 * zh, e1 * mr
-            if not planar:
-                s2 += rx * rx
-            own = d1 - kappa * s2 - e1 * (s * s) - c + e
-            wx += gy * (q * d + c * s) - gz * ry * (q - c) + turn * ry + own * mx
-            if not planar:
-                mrho = mx * rx + my * ry
-                axial, mirrored = d2 * (mrho + mz * d), kappa * (mrho - mz * s)
-                lead = axial + mirrored - e1 * (h * mz)
-                wx += lead * rx
-                wy += gz * rx * (q - c) - gx * (q * d + c * s) - turn * rx + own * my
-                wy += lead * ry
-                wz += (gx * ry - gy * rx) * (q + c) + axial * d + mirrored * s
-                wz += e1 * (z * mrho) + (d1 + kappa * s2 + c) * mz
-    ux, uy, uz = ux - 2.0 * z * vx, uy - 2.0 * z * vy, uz - 2.0 * z * vz
-    return ux, uy, uz, wx + 2.0 * vy, wy - 2.0 * vx, wz
+        rx, gx, my, mz = x - sources[0, k], loads[0, k], loads[4, k], loads[5, k]
+        r, g, m = (rx, ry, d), (gx, gy, gz), (mx, my, mz)
+        both = inverses[0, k], inverses[1, k]
+        sums = add_pair(blob, planar, angular, r, z, h, g, m, both, e2, sums)
+    return with_v(z, sums)
