@@ -44,13 +44,13 @@ def main(quick, repeats, threads):
     return [*tables, summary(sums + solves)], lambda *axes: draw(sums, *axes)
 
 
-def chosen_for(scene):
+def chosen_for(case, scene):
     """Return the number of threads that a run of a scene takes."""
     import numba
 
-    from rodsim.compiled.threads import threads_for
+    from rodsim.run.machine import Machine
 
-    with threads_for(scene.rods.points**2):
+    with Machine(case, scene, force=True).threads(None):
         return numba.get_num_threads()
 
 
@@ -61,7 +61,7 @@ def of_sum(size, counts, repeats):
 
     case = load_case(CONFIGS / "closed_ring.yaml", [f"rods.ring.shape.points={size}"])
     scene = build_scene(case)
-    chosen = chosen_for(scene)
+    chosen = chosen_for(case, scene)
     counts = sorted({*counts, chosen})
     sums = {count: Timed(sum_of(scene, count)) for count in counts}
     return rows(interleaved(sums, repeats, f"M = {size}"), "sum", size, chosen)
@@ -70,7 +70,7 @@ def of_sum(size, counts, repeats):
 def of_solve(name, counts, repeats):
     """Return the rows of a scene solved in memory."""
     solve = Solve(name, 1, *shorter(name, True))
-    chosen = chosen_for(solve.scene)
+    chosen = chosen_for(solve.case, solve.scene)
     solves = {n: (lambda n=n: solve.on(n)["wall"]) for n in sorted({*counts, chosen})}
     return rows(interleaved(solves, repeats, name), name, solve.scene.rods.points, chosen)
 

@@ -18,8 +18,8 @@ COMPILED = """
 import sys
 from rodsim.compiled.settings import prepare
 prepare()
-from rodsim.compiled.passes import weighted_sum
-print(weighted_sum.stats.cache_hits and "numba.np.arraymath" in sys.modules, "scipy" in sys.modules)
+from rodsim.compiled.rotations import displace
+print(displace.stats.cache_hits and "numba.np.arraymath" in sys.modules, "scipy" in sys.modules)
 """
 END = """
 import atexit, gc, sys
