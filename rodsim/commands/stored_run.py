@@ -58,13 +58,13 @@ def check_output(path) -> str:
 
 def _fate(run) -> str:
     """Return how a run has ended, and what to do if it has not come to its end."""
+    again = f"; go on with: rodsim resume {run.path}"
+    if run.status != "running":
+        return run.status + (again if run.status == "stopped" else "")
     from rodsim.output.paths import writing_process
 
-    again = f"; go on with: rodsim resume {run.path}"
-    if run.status == "running":
-        writer = writing_process(run.path)
-        return f"running, {writer}" if writer else f"killed{again}"
-    return run.status + (again if run.status == "stopped" else "")
+    writer = writing_process(run.path)
+    return f"running, {writer}" if writer else f"killed{again}"
 
 
 def _endings(run):
@@ -101,6 +101,8 @@ def _rows(run):
 
 def _inputs(run) -> list[str]:
     """Return a line for each file the run began from: its digest, and whether it is the same."""
+    if not run.inputs:
+        return []
     from rodsim.scene.inputs import look_again, stored_digests
 
     stored = stored_digests(run.inputs)
