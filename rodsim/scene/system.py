@@ -124,6 +124,7 @@ class RodSystem:
         run_stages(
             *calls, rows, rods, base.geometry, self._work, table, begin, end, size, f0, g, Y, out
         )
+        self._calls.raise_failures()
         self.seconds += perf_counter() - start
         self.evaluations += end + 1 - begin
         return end + 1 - begin
