@@ -7,6 +7,7 @@ Arrays on the card, and those of the CPU through which copies go, stay from call
 
 import ctypes
 import threading
+import warnings
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -33,7 +34,7 @@ class CardSum(Kernel):
 
     def __init__(self, at_wall: bool, blob: int, planar: bool = False, angular: bool = True):
         super().__init__(self._add_safely, "SUM")
-        self._choice = at_wall, blob, planar, angular
+        self.choice = at_wall, blob, planar, angular
 
     @cached_property
     def _compiled(self):
@@ -52,10 +53,8 @@ class CardSum(Kernel):
         if not targets.size or not sources.size:
             return
         with _one_at_a_time:
-            room = _room(targets.shape[1], sources.shape[1], len(out))
-            there = room.bring(targets, sources, loads)
-            share_kernel(*self._choice)[room.grid, THREADS](*there, epsilon, wall, room.parts)
-            add_parts[room.grid[0], THREADS](room.parts, 1.0 / (EIGHT_PI * viscosity), room.sums)
+            room = room_of(self.choice, targets.shape[1], sources.shape[1])
+            room.start(room.bring(targets, sources, loads), epsilon, viscosity, wall)
             out += room.sums.copy_to_host(room.found)
 
 
@@ -81,18 +80,19 @@ def _array(numbers):
 
 
 class _Room:
-    """The arrays of sums of one size."""
+    """The arrays of a sum of some size, and how its kernels are started."""
 
-    def __init__(self, targets, sources, rows):
-        shares = shares_of(targets, sources)
-        self.grid = -(-targets // THREADS), shares
+    def __init__(self, choice, targets, sources):
+        shares, rows = shares_of(targets, sources), 6 if choice[3] else 3
+        self.grid, self._kernel = (-(-targets // THREADS), shares), share_kernel(*choice)
+        with warnings.catch_warnings():  # few blocks: each launch is known from then on
+            warnings.simplefilter("ignore")
+            _ = self._kernel[self.grid, THREADS], add_parts[self.grid[0], THREADS]
         self._sent, self._sources = cuda.pinned_array((9, sources)), cuda.device_array((9, sources))
         self._targets = cuda.device_array((3, targets))
         self.parts = cuda.device_array((shares, rows, targets))
-        self.sums, self.found = (
-            cuda.device_array((rows, targets)),
-            cuda.pinned_array((rows, targets)),
-        )
+        self.sums = cuda.device_array((rows, targets))
+        self.found = cuda.pinned_array((rows, targets))
 
     def bring(self, targets, sources, loads):
         """Copy what a sum is made of to the card; return targets and sources there."""
@@ -103,10 +103,16 @@ class _Room:
         self._targets.copy_to_device(targets)
         return self._targets, self._sources
 
+    def start(self, there, epsilon, viscosity, wall):
+        """Start the kernels on what :meth:`bring` has returned; they fill ``sums``."""
+        self._kernel[self.grid, THREADS](*there, epsilon, wall, self.parts)
+        add_parts[self.grid[0], THREADS](self.parts, 1.0 / (EIGHT_PI * viscosity), self.sums)
+
 
 @lru_cache(maxsize=16)
-def _room(targets, sources, rows):
-    return _Room(targets, sources, rows)
+def room_of(choice: tuple, targets: int, sources: int) -> _Room:
+    """Return the arrays of sums of one size."""
+    return _Room(choice, targets, sources)
 
 
 def parts_on_card(scene, kind: str, pressure) -> list[Part]:
