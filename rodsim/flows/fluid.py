@@ -11,10 +11,10 @@ from importlib import import_module
 import numpy as np
 
 from rodsim.case.fields import Model, Number, quantity
+from rodsim.compiled.constants import GPU
 from rodsim.compiled.parts import FLOW, TRACERS, Part
 from rodsim.registry import Kind
 
-CPU, GPU = DEVICES = ("cpu", "gpu")
 CARD = "rodsim.flows.card.sums"
 
 

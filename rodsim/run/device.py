@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from rodsim.compiled.constants import CPU, GPU
 from rodsim.errors import UsageError
-from rodsim.flows.fluid import CPU, GPU
 from rodsim.output.writer import short
 from rodsim.scene.device import on_device
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from rodsim.compiled.constants import CPU, DEVICES, GPU
 from rodsim.errors import CaseError, UsageError
-from rodsim.flows.fluid import CPU, DEVICES, GPU
 
 
 def on_device(case, device: str | None):

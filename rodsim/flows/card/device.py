@@ -31,3 +31,17 @@ def card() -> dict[str, str]:
         reason = " ".join(str(error).split()) or type(error).__name__
         raise UsageError(f"no GPU: {reason.rstrip(' .:')}; {NEEDS}") from error
     return {"device": name if isinstance(name, str) else name.decode(), **found}
+
+
+def add_on_card(at_wall: bool, blob: str, angular: bool, *arguments) -> None:
+    """Call a sum on the card from Python: with (targets, ..., out), as in ``compiled/kernels.py``.
+
+    Raises UsageError where there is no card, or it fails.
+    """
+    card()
+    from rodsim.flows.card import sums
+
+    which = "spatial" if angular else "flow"
+    name = f"{'wall_' if at_wall else ''}{which}_{blob.removeprefix('algebraic')}"
+    getattr(sums, name)(*arguments)
+    sums.failed()

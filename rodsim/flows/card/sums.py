@@ -142,7 +142,7 @@ def failed() -> None:
     _failures.clear()
     if isinstance(error, Exception):
         raise UsageError(
-            f"the card failed: {type(error).__name__}: {error}; a run goes on by rodsim resume, "
+            f"the card failed: {type(error).__name__}: {error}; rodsim resume goes on with a run, "
             "with --device cpu on the CPU"
         ) from error
     raise error
