@@ -72,10 +72,10 @@ class Sources:
 class Replay:
     """The frames of a stored run; the file alone is enough, but it must hold the triads."""
 
-    def __init__(self, run):
-        """``run``: what :func:`rodsim.open_trajectory` returns."""
+    def __init__(self, run, device=None):
+        """``run``: what :func:`rodsim.open_trajectory` returns. ``device``: of the sums."""
         self.run = run
-        self.scene = restore_scene(run)
+        self.scene = restore_scene(run, device)
         time = run.case_data()["time"]
         self.rough = METHODS[time["integrator"]].adaptive and time["tolerance"] > EXACT
 

@@ -25,6 +25,7 @@ from rodsim.case.fields import Name, not_empty
 from rodsim.compiled.parts import FORCE, HOLD, PLACE, RELEASE, TRACERS, Part
 from rodsim.compiled.row import Entry, Row
 from rodsim.errors import CaseError
+from rodsim.flows.fluid import pair_sums
 from rodsim.forces.places import rod_named
 from rodsim.registry import Kind
 
@@ -165,16 +166,14 @@ def _build(case, scene) -> list[Part]:
     row = Row(rows.size, rows.entries, rows.watched)
     _check_finite(row, case)
     report = Report(blocks, scene)
-    sums = f"rodsim.flows.{'free' if scene.wall is None else 'wall'}:sum_"
-    blob = scene.blob.removeprefix("algebraic")
-    sums = f"{sums}{blob}", f"{sums}u_{blob}"
     shared = {"row": row, "fixed": fixed, "drive": "a motion or a motor"}
     parts = [
         Part("held", PLACE, "rodsim.blocks.frames:place_members", **shared,
              statics=statics_of(blocks, scene, shared)),
         Part("held", RELEASE, "rodsim.blocks.hold:release", **shared),
-        Part("held", HOLD, "rodsim.blocks.hold:hold", **shared, external=report.driven, sums=sums,
-             gauges=report.gauges, report=report, series=report.series, labels=report.labels),
+        Part("held", HOLD, "rodsim.blocks.hold:hold", **shared, external=report.driven,
+             sums=pair_sums(scene), gauges=report.gauges, report=report,
+             series=report.series, labels=report.labels),
     ]  # fmt: skip
     if scene.bodies:
         parts.append(

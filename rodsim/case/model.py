@@ -107,6 +107,7 @@ class Case(Model):
 
     _source: Source = PrivateAttr(default_factory=Source)
     _warnings: tuple[Problem, ...] = PrivateAttr(())
+    _device: str = PrivateAttr("cpu")
 
     @property
     def source(self) -> Source:
@@ -117,6 +118,17 @@ class Case(Model):
     def warnings(self) -> tuple[Problem, ...]:
         """What looks wrong but does not stop a run."""
         return self._warnings
+
+    @property
+    def device(self) -> str:
+        """Where its sums are computed: not of the file, but of who runs it."""
+        return self._device
+
+    def on(self, device: str) -> Case:
+        """Return the same case, its sums computed on a device."""
+        case = self.model_copy()
+        case._device = device
+        return case
 
     @property
     def interval(self) -> float:

@@ -28,6 +28,11 @@ threads_option = click.option(
     type=click.IntRange(1, 1024),
     help="Number of threads; by default as many as the scene is worth.",
 )
+device_option = click.option(
+    "--device",
+    type=click.Choice(["cpu", "gpu"]),
+    help="Where the sums are computed: cpu, or on a GPU, exactly (docs/large.md).",
+)
 
 
 def _seconds(ctx, param, text):
@@ -92,6 +97,13 @@ def is_output(path) -> bool:
         return path.suffix in (".h5", ".hdf5") or has_hdf5_signature(path)
     except OSError:
         return False
+
+
+def placed(case, device):
+    """Return a case whose sums are computed on a device; after ``prepare_numba``."""
+    from rodsim.scene.device import on_device
+
+    return on_device(case, device)
 
 
 def prepare_numba() -> None:

@@ -6,7 +6,9 @@ import click
 
 from rodsim.commands.common import (
     case_argument,
+    device_option,
     load,
+    placed,
     prepare_numba,
     say,
     say_warnings,
@@ -53,8 +55,9 @@ class _Axes(click.ParamType):
 )
 @set_option
 @threads_option
+@device_option
 @click.option("-q", "--quiet", is_flag=True, help="No progress.")
-def converge(case_path, axes, report, overrides, threads, quiet):
+def converge(case_path, axes, report, overrides, threads, device, quiet):
     """Measure error against run time of this very scene.
 
     Runs the case again and again: at other tolerances (rkc) and steps (euler, rk4), with other
@@ -65,6 +68,7 @@ def converge(case_path, axes, report, overrides, threads, quiet):
     case = load(case_path, overrides)
     say_warnings(case)
     prepare_numba()
+    case = placed(case, device)
     from rodsim.run.warmup import ensure_compiled
     from rodsim.scene.build import build_scene
 
@@ -84,7 +88,10 @@ def converge(case_path, axes, report, overrides, threads, quiet):
     rows, interrupted = reporting.CsvRows(table), False
     with make_progress(case.title or case_path.name, quiet) as progress:
         study = Study(
-            lambda more: load(case_path, (*overrides, *more)), axes, threads, progress=progress
+            lambda more: placed(load(case_path, (*overrides, *more)), device),
+            axes,
+            threads,
+            progress=progress,
         )
         try:
             for section, result in study.run():

@@ -6,6 +6,7 @@ import click
 
 from rodsim.commands.common import (
     STILLS,
+    device_option,
     output_argument,
     prepare_numba,
     say,
@@ -60,9 +61,10 @@ TRUSTED = 0.1  # of epsilon: what tracers may be off by in one frame without a w
               "otherwise.")
 @sheet_options
 @threads_option
+@device_option
 @click.option("-q", "--quiet", is_flag=True, help="No progress, no message.")
 def flow(output, at, grid_text, resolution, path, colour, arrows, log, tracers, until, raw, threads,
-         size, dpi, title, quiet):
+         device, size, dpi, title, quiet):
     # fmt: on
     """Compute velocity and pressure of the fluid around the rods of a stored run.
 
@@ -76,16 +78,18 @@ def flow(output, at, grid_text, resolution, path, colour, arrows, log, tracers, 
     _refuse_unused(tracers, for_flow, {"--until": until is not None})
     there = path.exists()
     prepare_numba()
+    from rodsim.analysis.replay import Replay
     from rodsim.compiled.threads import threads_for
     from rodsim.output import open_trajectory
 
     sheet = size, dpi, title
     with open_trajectory(output) as run, threads_for(10**12, threads):
+        replay = Replay(run, device)
         if tracers:
-            _tracers(run, at, until, grid_text, resolution, path, sheet, quiet)
+            _tracers(replay, at, until, grid_text, resolution, path, sheet, quiet)
         else:
             drawn = colour, arrows, log
-            _flow(run, at, grid_text, resolution, path, drawn, raw, sheet, quiet)
+            _flow(replay, at, grid_text, resolution, path, drawn, raw, sheet, quiet)
     say_written(path, there, quiet)
 
 
@@ -98,12 +102,11 @@ def _refuse_unused(tracers, for_flow, for_tracers):
             raise UsageError(f"{option} is {'not for' if tracers else 'only for'} --tracers")
 
 
-def _flow(run, at, grid_text, resolution, path, drawn, raw, sheet, quiet):
+def _flow(replay, at, grid_text, resolution, path, drawn, raw, sheet, quiet):
     from rodsim.analysis.flow import flow_at
     from rodsim.analysis.grid import make_grid
-    from rodsim.analysis.replay import Replay
 
-    replay = Replay(run)
+    run = replay.run
     frame = _frame(run, at, run.frames - 1, quiet)
     grid = make_grid(grid_text, _points(run, frame), resolution, floor=run.wall)
     flow = flow_at(replay, frame, grid, raw)
@@ -121,13 +124,12 @@ def _flow(run, at, grid_text, resolution, path, drawn, raw, sheet, quiet):
         export_flow(flow, run.units, path)
 
 
-def _tracers(run, at, until, grid_text, resolution, path, sheet, quiet):
+def _tracers(replay, at, until, grid_text, resolution, path, sheet, quiet):
     from rodsim.analysis.flow import tracer_paths
     from rodsim.analysis.grid import make_grid
-    from rodsim.analysis.replay import Replay
     from rodsim.progress import make_progress
 
-    replay = Replay(run)
+    run = replay.run
     first = _frame(run, at, 0, quiet)
     last = _frame(run, until, run.frames - 1, quiet)
     if last <= first:

@@ -6,9 +6,11 @@ import click
 
 from rodsim.commands.common import (
     case_argument,
+    device_option,
     from_option,
     load_from,
     max_wall_option,
+    placed,
     prepare_numba,
     say,
     say_warnings,
@@ -32,6 +34,7 @@ from rodsim.files import DEFAULT_OUTPUT
 @set_option
 @from_option
 @threads_option
+@device_option
 @max_wall_option
 @until_option
 @click.option("--overwrite", is_flag=True, help="Replace an existing output file.")
@@ -41,12 +44,24 @@ from rodsim.files import DEFAULT_OUTPUT
 )
 @click.option("-q", "--quiet", is_flag=True, help="No progress and no summary.")
 def run(
-    case_path, output, overrides, origin, threads, max_wall, until, overwrite, force, dry_run, quiet
+    case_path,
+    output,
+    overrides,
+    origin,
+    threads,
+    device,
+    max_wall,
+    until,
+    overwrite,
+    force,
+    dry_run,
+    quiet,
 ):
     """Run a case and write its trajectory, energies and balances to an HDF5 file."""
     case = load_from(case_path, overrides, origin)
     say_warnings(case)
     prepare_numba()
+    case = placed(case, device)
     if dry_run:
         from rodsim.commands import reports
 

@@ -130,6 +130,7 @@ class Part:
     statics : what it tells those who look for states at rest.
     prepare : called with (state, loads (6, N)) where a step begins, returns ``fixed`` for that
     step: what depends on the state alone and is to be frozen over a step.
+    failed : called after evaluations, raises what has stopped the kernel, which cannot raise.
     needs : where the kernels are that ``prepare`` calls beside the part's own, if any.
     """
 
@@ -153,6 +154,7 @@ class Part:
     warnings: tuple = ()
     statics: Statics = LOCAL
     prepare: Callable | None = None
+    failed: Callable | None = None
     needs: tuple[str, ...] = ()
 
     @property

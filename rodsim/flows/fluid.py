@@ -11,8 +11,11 @@ from importlib import import_module
 import numpy as np
 
 from rodsim.case.fields import Model, Number, quantity
+from rodsim.compiled.constants import GPU
 from rodsim.compiled.parts import FLOW, TRACERS, Part
 from rodsim.registry import Kind
+
+CARD = "rodsim.flows.card.sums"
 
 
 class Wall(Model):
@@ -23,18 +26,33 @@ class Wall(Model):
 
 def fluid_parts(scene) -> list[Part]:
     """Return the sums (32), (33) over the rods of a scene, and those at tracers."""
-    at_wall = scene.wall is not None
-    fixed = np.array([scene.epsilon, scene.viscosity, *([scene.wall] if at_wall else [])])
-    home = f"rodsim.flows.{'wall' if at_wall else 'free'}"
+    home, kind = _home(scene), "planar" if scene.planar else "spatial"
+    pressure = pressure_of(scene, home)
+    if scene.device == GPU:
+        from rodsim.flows.card.sums import parts_on_card
+
+        return parts_on_card(scene, kind, pressure)
+    fixed = np.array(
+        [scene.epsilon, scene.viscosity, *([] if scene.wall is None else [scene.wall])]
+    )
     blob = scene.blob.removeprefix("algebraic")
-    kind = "planar" if scene.planar else "spatial"
     return [
         Part("fluid", FLOW, f"{home}:{kind}_{blob}", fixed=fixed),
-        Part(
-            "fluid", TRACERS, f"{home}:tracers_{blob}", fixed=fixed,
-            pressure=pressure_of(scene, home),
-        ),
-    ]  # fmt: skip
+        Part("fluid", TRACERS, f"{home}:tracers_{blob}", fixed=fixed, pressure=pressure),
+    ]
+
+
+def pair_sums(scene) -> tuple[str, str]:
+    """Return where the sums are that parts call by address: of u and w, of u alone."""
+    blob = scene.blob.removeprefix("algebraic")
+    if scene.device == GPU:
+        at = "" if scene.wall is None else "wall_"
+        return tuple(f"{CARD}:{at}{which}_{blob}" for which in ("spatial", "flow"))
+    return tuple(f"{_home(scene)}:{which}_{blob}" for which in ("sum", "sum_u"))
+
+
+def _home(scene):
+    return f"rodsim.flows.{'free' if scene.wall is None else 'wall'}"
 
 
 def pressure_of(scene, home):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rodsim.compiled.constants import DEVICES, GPU
 from rodsim.compiled.threads import computing
 from rodsim.errors import UsageError
 from rodsim.flows import free
@@ -35,6 +36,7 @@ def velocity(
     wall: float | None = None,
     accuracy: float | None = None,
     rods: ArrayLike | None = None,
+    device: str = "cpu",
 ) -> tuple[np.ndarray, np.ndarray | None]:
     """Return linear and angular velocity at ``targets``, eqs. (32), (33), (61), (66).
 
@@ -54,6 +56,7 @@ def velocity(
         relative error, root mean square over the targets: for sources along curves, one after
         another, thousands of them (docs/large.md).
     rods : how many of the sources each curve has, in order; by default all are one curve.
+    device : ``"cpu"``, or ``"gpu"`` for exact sums on an NVIDIA card (docs/large.md).
 
     Returns
     -------
@@ -62,23 +65,33 @@ def velocity(
 
     Raises
     ------
-    UsageError : a shape, the blob's name, epsilon, viscosity, the wall's height, the accuracy or
-        the numbers of sources cannot be used; a source is at the wall or below it; the accuracy
-        cannot be reached.
+    UsageError : a shape, the blob's name, epsilon, viscosity, the wall's height, the accuracy,
+        the numbers of sources or the device cannot be used; a source is at the wall or below it;
+        the accuracy cannot be reached.
     """
     targets, sources, loads = _arrays(targets, sources, forces, torques)
     fluid = _positive(epsilon, "epsilon"), _positive(viscosity, "viscosity")
     _blob(blob)
+    if device not in DEVICES or (device == GPU and accuracy is not None):
+        raise UsageError(
+            f"device must be one of {', '.join(DEVICES)}, and fast sums are for the CPU"
+        )
     if accuracy is not None:
         out = _fast(targets, sources, loads, fluid, blob, bool(angular), wall, accuracy, rods)
         return out[:3].T.copy(), (out[3:].T.copy() if angular else None)
     if rods is not None:
         raise UsageError("rods is for the fast sums: give accuracy too")
     sums, height = _sums(wall, sources)
-    kernel = sums.velocity_kernel(_blob(blob), False, bool(angular))
     out = np.zeros((6 if angular else 3, targets.shape[1]))
-    with computing():
-        kernel(targets, sources, loads, *fluid, *height, out)
+    if device == GPU:
+        from rodsim.flows.card.device import add_on_card
+
+        choice = wall is not None, blob, bool(angular)
+        add_on_card(*choice, targets, sources, loads, *fluid, *(height or (0.0,)), out)
+    else:
+        kernel = sums.velocity_kernel(_blob(blob), False, bool(angular))
+        with computing():
+            kernel(targets, sources, loads, *fluid, *height, out)
     out[:, _below(targets, wall)] = np.nan
     return out[:3].T.copy(), (out[3:].T.copy() if angular else None)
 

@@ -107,7 +107,7 @@ def _fill(file, plan):
         _add_bodies(file.create_group("bodies"), plan.bodies)
     _add_series(file, plan)
     describe(file)
-    _add_runtime(file.create_group("runtime"))
+    _add_runtime(file.create_group("runtime"), plan.device)
     allocate(file.create_group("checkpoint"), plan.checkpoint)
     build_view(file, plan)
     file.flush()
@@ -181,11 +181,11 @@ def _add_series(file, plan):
             group["time"], group["step"] = clock["time"], clock["step"]
 
 
-def _add_runtime(group):
+def _add_runtime(group, device):
     text = f"S{layout.TEXT_BYTES}"
     for name, kind in layout.RUNTIME.items():
         group.attrs.create(name, layout.UNKNOWN[kind], dtype=text if kind is str else None)
-    for name, value in machine().items():
+    for name, value in (machine() | device).items():
         group.attrs.create(name, np.bytes_(value), dtype=text)
 
 

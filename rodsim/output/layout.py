@@ -73,6 +73,7 @@ RUNTIME = {
 }
 # of /runtime too; files of older versions lack them
 MACHINE = ("numba", "llvmlite", "numpy", "processor")
+DEVICE = ("device", "numba_cuda")  # only of runs with sums on a GPU
 
 
 @dataclass(frozen=True)
@@ -109,6 +110,7 @@ class Plan:
     (name, shape, dimension) each, and a place in the file where that is not /observables. bodies :
     what never changes of rigid bodies, arrays and numbers by name, by the name of the body.
     labels : whose the rows of a series are, by its name.
+    device : attributes of /runtime on the GPU of a run, if it has one.
     arrays : by rod, what its strain twist was made from beside the case's text, and where its held
     ends are at rest, by name.
     """
@@ -125,6 +127,7 @@ class Plan:
     arrays: dict = field(default_factory=dict)
     bodies: dict = field(default_factory=dict)
     labels: dict = field(default_factory=dict)
+    device: dict = field(default_factory=dict)
 
     @property
     def points(self) -> int:

@@ -29,7 +29,7 @@ def reopen(path, plan: Plan, lock) -> TrajectoryWriter:
         View(file["VTKHDF"]).show_all(plan.times[: writer.committed])
         file.attrs.modify("status", short("running"))
         file.flush()
-    writer.update_runtime(machine())
+    writer.update_runtime(machine() | (plan.device or {"device": "cpu"}))
     return writer
 
 

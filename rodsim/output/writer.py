@@ -141,8 +141,8 @@ class TrajectoryWriter:
         with self.writing() as file:
             attrs = file["runtime"].attrs
             for name, value in runtime.items():
-                if name in layout.MACHINE and name not in attrs:
-                    continue  # a file of an older rodsim: nothing may be added to what is there
+                if name in (*layout.MACHINE, *layout.DEVICE) and name not in attrs:
+                    continue  # of an older rodsim, or on a CPU: nothing may be added
                 attrs.modify(name, short(value) if isinstance(value, str) else value)
             file.flush()
 

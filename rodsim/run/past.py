@@ -19,7 +19,9 @@ from rodsim.output import CaseText, Trajectory, open_trajectory
 from rodsim.output.paths import OutputLock
 from rodsim.output.reopen import extend, note_resume, reopen
 from rodsim.output.verify import whole_frames
+from rodsim.run.device import before, case_to_go_on, name_of
 from rodsim.run.recorder import frame_times, plan_output
+from rodsim.scene.device import machine_of
 from rodsim.scene.inputs import CHANGED, look_again, stored_digests
 from rodsim.scene.restore import stored_state
 
@@ -68,10 +70,15 @@ class Past:
         done = run.status == "finished" and run.frames == len(run.planned)
         return not self.changed and done and self.whole == run.frames
 
+    def go_on_at(self, device: str | None) -> None:
+        """Choose where its sums are computed: None for the device that the file names."""
+        self.case = case_to_go_on(self.case, self.run, device)
+
     def warnings(self):
         """Yield what may keep the result from being that of an uninterrupted run, bit for bit."""
-        here = {"rodsim": rodsim.__version__, **machine()}
+        here = {"rodsim": rodsim.__version__, **machine(), **machine_of(self.case)}
         there = {"rodsim": self.run.version, **self.run.runtime}
+        here["device"], there["device"] = name_of(self.case), before(self.run)
         known = [name for name in here if there.get(name, here[name]) != here[name]]
         if known:
             was, now = (", ".join(f"{name} {at[name]}" for name in known) for at in (there, here))
@@ -122,7 +129,7 @@ class Past:
         if plan.rods != run.rods:
             raise FileError(f"{self.path}: damaged: its rods are not those of its case")
         history = self._history()
-        if self.changed:
+        if self.changed or (plan.device and "device" not in run.runtime):
             writer = extend(self.path, plan, self.lock, run, self._compute(machine.system))
             run.close()
         else:
@@ -151,6 +158,8 @@ class Past:
     def _history(self):
         now = datetime.now(UTC).isoformat(timespec="seconds")
         changes = "".join(f" --set {text}" for text in self.overrides)
+        if (now_on := name_of(self.case)) != before(self.run):
+            changes = f" --device {self.case.device} ({now_on}){changes}"
         at = f"from t = {self.snapshot['time']:.6g}, {self.run.frames} frames"
         return f"{now} {at}, was {self.run.status}; rodsim {rodsim.__version__}{changes}"
 

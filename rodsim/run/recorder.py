@@ -9,6 +9,7 @@ from rodsim.errors import StepFailure
 from rodsim.output import CaseText, Plan
 from rodsim.output.writer import NotFinite
 from rodsim.run.ending import Motion, SumErrors
+from rodsim.scene.device import machine_of
 from rodsim.scene.inputs import case_digests
 from rodsim.scene.series import extra_series, row_labels
 
@@ -47,6 +48,7 @@ def plan_output(case, scene, checkpoint: dict) -> Plan:
         arrays=scene.arrays,
         labels=row_labels(scene),
         bodies={body.name: body.stored() for body in scene.bodies},
+        device=machine_of(case),
     )
 
 

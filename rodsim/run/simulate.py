@@ -15,6 +15,7 @@ from rodsim.output.paths import check_place
 from rodsim.run.listener import Functions, Listener, Summary
 from rodsim.run.past import open_past
 from rodsim.scene.build import build_scene
+from rodsim.scene.device import on_device
 
 STILL = "still"  # when a run is to end before its time
 
@@ -27,6 +28,7 @@ def simulate(
     threads: int | None = None,
     force: bool = False,
     until: Literal["still"] | None = None,
+    device: Literal["cpu", "gpu"] | None = None,
     notify: Callable[[str], object] | None = None,
     stop: Callable[[], str] | None = None,
     progress: Any = None,
@@ -43,6 +45,7 @@ def simulate(
     force : run also with a fixed step above its limit of stability.
     until : ``"still"`` ends the run before ``time.end`` when nothing moves any more, see
         :meth:`rodsim.run.ending.Motion.still`.
+    device : where the sums are computed, ``"cpu"`` or, exactly, on a ``"gpu"`` (docs/large.md).
     notify : called with the text of each warning; by default they are Python's own.
     stop : called after each step; returns why the run is to stop there, or an empty text.
     progress : object with ``update(fraction, note)``, or True for a bar on a terminal, a line in a
@@ -60,6 +63,7 @@ def simulate(
         raise UsageError("simulate takes a case: rodsim.load_case(path)")
     listener = listener or Functions(notify, stop, progress, case.title or str(output))
     started = perf_counter()
+    case = on_device(case, device)
     _refuse_sources(case, output)
     check_place(output, overwrite)  # before the wait for the compiler
     scene = build_scene(case)
@@ -88,6 +92,7 @@ def resume(
     overrides: Iterable[str] | Mapping[str, Any] = (),
     threads: int | None = None,
     until: Literal["still"] | None = None,
+    device: Literal["cpu", "gpu"] | None = None,
     notify: Callable[[str], object] | None = None,
     stop: Callable[[], str] | None = None,
     progress: Any = None,
@@ -96,20 +101,24 @@ def resume(
     """Go on with a run where it stopped or was killed, in the same file, with the same bits.
 
     ``overrides``, a list or dict as in :func:`rodsim.load_case`, may set a later ``time.end`` and
-    add to ``output.fields``, nothing else; the rest is as in :func:`simulate`. Raises CaseError for
-    other changes, FileError for a file that cannot be gone on with. A finished run without changes
-    is left as it is.
+    add to ``output.fields``, nothing else; ``device`` is by default that which the file names; the
+    rest is as in :func:`simulate`. Raises CaseError for other changes, FileError for a file that
+    cannot be gone on with, UsageError where that device is not there. A finished run without
+    changes is left as it is.
     """
     listener = listener or Functions(notify, stop, progress, str(output))
     started = perf_counter()
     with open_past(output, override_texts(overrides)) as past:
-        return go_on(past, started, threads, listener, until)
+        return go_on(past, started, threads, listener, until, device)
 
 
-def go_on(past, started: float, threads: int | None, listener: Listener, until=None) -> Summary:
+def go_on(
+    past, started: float, threads: int | None, listener: Listener, until=None, device=None
+) -> Summary:
     """Go on with a :class:`rodsim.run.past.Past`; ``started``: when, by ``perf_counter``."""
     if past.complete:
         return Summary("finished", past.run.frames)
+    past.go_on_at(device)
     for text in past.warnings():
         listener.warn(text)
     scene = build_scene(past.case, past)

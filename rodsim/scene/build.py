@@ -73,6 +73,7 @@ def build_scene(case, stored=None) -> Scene:
         arrays={name: kept for name, kept in arrays.items() if kept},
         warnings=tuple(found.warnings),
         bodies=bodies,
+        device=case.device,
     )
     if problems := [*below_wall(case, scene), *(() if stored else check_bodies(case, scene))]:
         raise CaseError(problems)

@@ -46,6 +46,7 @@ class Calls:
         self._lasting = self.numbers
         self._prepared = [k for k, part in enumerate(parts) if part.prepare]
         self._parts = parts
+        self._failed = {part.failed for part in parts if part.failed}
         self.accounts = int((self.table[:, ACCOUNT] >= 0).sum())
 
     def fixed(self, part) -> np.ndarray:
@@ -71,6 +72,11 @@ class Calls:
             blocks.append(block)
             begin += block.size
         self.numbers = np.concatenate(blocks)
+
+    def raise_failures(self) -> None:
+        """Raise what has stopped a part in an evaluation: kernels cannot."""
+        for failed in self._failed:
+            failed()
 
     def rows_at(self, times: np.ndarray) -> np.ndarray:
         """Return the driven rows side by side (T, n) at the first T of the times; else (1, 0)."""

@@ -26,6 +26,7 @@ class Evaluation:
         if calls.prepares:
             calls.prepare(state, loads)
         evaluate(calls.table, calls.numbers, now, rods, geometry, loads, (u, v), self.own)
+        calls.raise_failures()
 
     def left_by(self, part: Part) -> np.ndarray:
         """Return the fixed numbers of a part with what its last call has left in them."""

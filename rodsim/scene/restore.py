@@ -11,21 +11,22 @@ from rodsim.errors import CaseError, FileError
 from rodsim.forces.contact import contact_diameter
 from rodsim.scene.bodies import stored_nodes
 from rodsim.scene.build import build_scene, epsilon_of
+from rodsim.scene.device import on_device
 from rodsim.scene.neighbours import hydrodynamic_diameter
 from rodsim.scene.state import Scene, State
 
 
-def restore_scene(run) -> Scene:
+def restore_scene(run, device=None) -> Scene:
     """Return the scene of a stored run, its first frame as the initial state, without tracers.
 
     ``run`` is what :func:`rodsim.open_trajectory` returns. Rods are as the file records them, so
-    that a shape file the case names need not be there any more. Raises FileError.
+    that a shape file the case names need not be there any more. ``device``: on which its sums are
+    computed. Raises FileError.
     """
     if run.frames == 0:
         raise FileError(f"{run.path}: has no frames yet ({run.status})")
     case, first = restore_case(run), stored_state(run, 0)
-    case = case.model_copy(update={"tracers": {}})
-
+    case = on_device(case.model_copy(update={"tracers": {}}), device)
     try:
         scene = build_scene(case, _Frame(run, first))
     except (ValueError, CaseError) as error:

@@ -47,6 +47,7 @@ class Scene:
     arrays : by rod, what its strain twist was made from beside the case's text, and where its held
     ends are at rest, by name.
     warnings : Problems that do not stop a run, and that only the geometry could tell.
+    device : on which its sums are computed, cpu or gpu.
     bodies : its rigid bodies, :class:`rodsim.scene.bodies.Body`.
     """
 
@@ -64,6 +65,7 @@ class Scene:
     arrays: dict = field(default_factory=dict)
     warnings: tuple = ()
     bodies: tuple = ()
+    device: str = "cpu"
     parts: PartList = NO_PARTS
 
     @property

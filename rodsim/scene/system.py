@@ -153,6 +153,7 @@ class RodSystem:
             self._prepared_for = base
         scene = rows, self.scene.rods.tables, base.geometry, work
         found = kernel(EVALUATION, calls.table, calls.numbers, *scene, *arguments)
+        calls.raise_failures()
         self.seconds += perf_counter() - start
         self.evaluations += evaluations
         return found
