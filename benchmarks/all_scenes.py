@@ -1,11 +1,14 @@
 """Error against run time of every shipped scene, beside forward Euler and RK4.
 
 Each scene is a study in time of ``rodsim converge`` (tolerances two decades around its own, the
-longest stable steps of Euler and RK4), of its first part where all of it would take longer than
-``budget`` seconds: the methods of fixed step are what takes long. work_precision.py --all calls it.
+longest stable steps of Euler and RK4) with fewer rows: a tolerance a decade, the reference another
+decade below. Of scenes that would take longer than ``budget`` seconds it is the first part. Times
+are CPU seconds of one thread, one run after another, which other work on the machine changes least.
+work_precision.py --all calls it.
 """
 
 import csv
+import time
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +17,9 @@ CONFIGS = Path(__file__).parent.parent / "configs"
 AXES = ("tolerance", "step")
 RESTS = ("michell_ring",)  # for rodsim rest: nothing of it moves
 COLUMNS = ("scene", "end", "of the run", "points", "method", "value", "status", "error / length",
-           "reference / length", "evaluations", "seconds")  # fmt: skip
-EVALUATION = 7.5e-5  # s that all but the sums takes, on one core
+           "reference / length", "evaluations", "seconds", "part run")  # fmt: skip
+PARTS = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)  # of a run
+DECADES = (1e2, 1e1, 1.0, 1e-1, 1e-2)  # tolerances, over a scene's own
 MARKS = {"rkc": "o", "euler": "s", "rk4": "^"}
 COLOURS = {"rkc": "#0b4f8a", "euler": "#d1660f", "rk4": "#3a7d2c"}
 
@@ -27,42 +31,59 @@ def scenes():
 
 def rows_of(scene, budget):
     """Return the rows of a scene's study, with the keys of COLUMNS."""
-    from rodsim.case import load_case
-
     path = CONFIGS / f"{scene}.yaml"
-    whole = load_case(path)
-    end = min(1.0, budget / _seconds(whole)) * whole.time.end
-    end = whole.time.end if end == whole.time.end else float(f"{end:.1e}")
+    part = next((part for part in PARTS if _seconds(path, part) < budget), PARTS[-1])
     return [
         {
-            "scene": scene, "end": end, "of the run": end / whole.time.end,
+            "scene": scene, "end": study.case.time.end, "of the run": part,
             "points": study.scene.rods.points, "method": result.row.method,
-            "value": result.row.value, "status": result.status, **_numbers(section, result),
+            "value": result.row.value, "status": result.status,
+            "part run": result.row.part, **_numbers(section, result),
         }
-        for study, section, result in _results(path, end)
+        for study, section, result in _results(path, part)
     ]  # fmt: skip
 
 
-def _results(path, end):
+def _first(path, part, more=()):
+    """Return the first part of a scene; frames stay where they were, as far as it goes."""
     from rodsim.case import load_case
+
+    if part == 1.0:
+        return load_case(path, more)
+    whole = load_case(path)
+    end = float(f"{part * whole.time.end:.3g}")
+    interval = min(end, whole.output.interval)
+    return load_case(path, (f"time.end={end!r}", f"output.interval={interval!r}", *more))
+
+
+def _results(path, part):
+    from rodsim.convergence import outcome, side_by_side
     from rodsim.convergence.study import Study
 
-    study = Study(lambda more: load_case(path, (f"time.end={end!r}", *more)), AXES)
+    outcome.perf_counter = time.thread_time
+    side_by_side.usable_cores = lambda: 1
+    study = Study(lambda more: _first(path, part, more), AXES, threads=1)
     for section, result in study.run():
         yield study, section, result
 
 
-def _seconds(case):
-    """Predict how long the rows of fixed step would take."""
-    from rodsim.convergence.outcome import pairs
-    from rodsim.convergence.rows import step_rows
+def _seconds(path, part):
+    """Predict how long the study of the first part of a scene takes."""
+    from rodsim.convergence import rows
+    from rodsim.convergence.plan import plan
     from rodsim.integrators.limits import stability
     from rodsim.scene.build import build_scene
     from rodsim.scene.system import RodSystem
 
+    rows.TOLERANCES, rows.REFERENCE, rows.CHECK = DECADES, DECADES[-1] / 10.0, DECADES[-1]
+    case = _first(path, part)
     scene = build_scene(case)
-    evaluations = sum(row.evaluations for row in step_rows(case, stability(RodSystem(scene))))
-    return evaluations * (EVALUATION + 1.5e-9 * pairs(scene))
+    stability(RodSystem(scene))  # what is compiled is loaded
+    system, begin = RodSystem(scene), time.thread_time()
+    limits = stability(system)
+    each = (time.thread_time() - begin) / system.evaluations
+    (timed,) = plan(case, scene, limits, AXES)
+    return each * sum(row.evaluations for row in timed.all_rows)
 
 
 def _numbers(section, result):

@@ -6,6 +6,7 @@ from rodsim.convergence.outcome import pairs
 from rodsim.convergence.report import fitted_order
 from rodsim.plotting import style
 
+WIDE = 1.5  # times as wide as high: the three panels then stand side by side
 FEW_DECADES = 2.6  # on fewer, ticks stand at 2 and 5 as well
 MARKS = {"rkc": ("o", "#0b4f8a"), "euler": ("s", "#d1660f"), "rk4": ("^", "#3a7d2c")}
 SPACE = {
@@ -38,16 +39,18 @@ TITLES = {
 
 
 @style.styled
-def plot_study(study, path) -> None:
+def plot_study(study, path, sheet=style.PLAIN) -> None:
     """Draw the errors against run time, evaluations, and what was varied, to a file."""
-    figure = style.new_figure(15, 4.8)
-    time, work, size = figure.subplots(1, 3, sharey=True)
+    figure = sheet.figure(15, 4.8, study.case.title or "Error against run time")
+    width, height = figure.get_size_inches()
+    abreast = {"nrows": 1, "ncols": 3} if width > WIDE * height else {"nrows": 3, "ncols": 1}
+    time, work, size = figure.subplots(**abreast, sharey=True)
     draw_run_time(time, study)
     draw_evaluations(work, study)
     draw_orders(size, study)
-    time.set_ylabel(style.label("largest position error at the end", study.case.units.length))
-    figure.suptitle(study.case.title or "Error against run time")
-    style.save(figure, path)
+    for axis in [time] if abreast["nrows"] == 1 else [time, work, size]:
+        axis.set_ylabel(style.label("largest position error at the end", study.case.units.length))
+    sheet.save(figure, path)
 
 
 def draw_run_time(axis, study):
@@ -77,6 +80,7 @@ def _draw_cost(axis, study, cost):
             marker, colour = SPACE.get(section.axis) or MARKS[method]
             label = f"{method}, {TITLES[section.axis]}"
             axis.loglog(costs, errors, DASHES[section.axis], marker=marker, c=colour, label=label)
+            _hollow(axis, costs, errors, part, marker, colour)
         if section.axis == "time" and section.own and section.own.position > 0.0:
             axis.axhline(section.own.position, c="0.6", lw=1, zorder=0)
             axis.annotate("the reference is good to this", (0.98, section.own.position),
@@ -97,8 +101,16 @@ def draw_orders(axis, study):
             label = f"{method}, {_what(section)}" + (f": slope {order:.2f}" if order else "")
             errors = [r.errors.position for r in part]
             axis.loglog(sizes, errors, DASHES[section.axis], marker=marker, c=colour, label=label)
+            _hollow(axis, sizes, errors, part, marker, colour)
     axis.set_xlabel(" or ".join(SIZES[section.axis] for section in study.sections))
     return _finish(axis)
+
+
+def _hollow(axis, x, errors, part, marker, colour):
+    """Mark the rows that are not run to the end."""
+    chosen = [k for k, r in enumerate(part) if r.row.part < 1.0]
+    if chosen:
+        axis.plot(np.take(x, chosen), np.take(errors, chosen), marker, mfc="white", c=colour)
 
 
 def _by_method(section):
@@ -128,6 +140,8 @@ def _what(section):
 
 def _finish(axis, legend=True):
     if axis.get_legend_handles_labels()[0]:  # there is something to see
+        if any(line.get_mfc() == "white" for line in axis.lines):
+            axis.plot([], [], "o", mfc="white", c="0.4", label="only the first part was run")
         if legend:
             axis.legend(frameon=False, fontsize=8)
         for side, limits in ((axis.xaxis, axis.get_xlim()), (axis.yaxis, axis.get_ylim())):

@@ -204,6 +204,30 @@ def test_the_twin_in_space_has_the_points_of_the_case(in_space):
     assert not section.amplified
 
 
+STIFF = ("rods.rod.shape.points=9", "time.end=6e-5", "time.tolerance=1e-2", "fluid.epsilon=0.05")
+
+
+@pytest.mark.compiled
+def test_costly_rows_are_run_over_a_stretch_and_come_to_what_they_would_at_the_end():
+    """Half of euler's step has half its error, up to the next order: 3 per cent in this scene."""
+    made, short = study("step", overrides=STIFF)
+    _, whole = study("step", overrides=STIFF, whole=True)
+    rows = [{(r.row.method, r.row.value): r for _, r in results} for results in (short, whole)]
+    assert rows[0].keys() == rows[1].keys()
+    assert [r.row.part for _, r in short] == [1.0, 0.05, 0.05]
+    for one, all_of_it in zip(rows[0].values(), rows[1].values(), strict=True):
+        assert one.outcome.evaluations == all_of_it.outcome.evaluations
+        assert one.outcome.steps == all_of_it.outcome.steps
+    longest, half, rk4 = (r.errors for r in rows[0].values())
+    measured = [r.errors for r in rows[1].values()]
+    assert longest == measured[0]
+    for name in ("position", "rms", "angle"):
+        assert getattr(half, name) == pytest.approx(getattr(measured[1], name), rel=0.05)
+    assert rk4.position < 0.05 * longest.position  # another order: its size alone
+    assert text(made).count("  *") == 2
+    assert "*: only the first 5% was run" in text(made)
+
+
 FEW = ("rods.rod.shape.points=9", "time.end=1e-4", "time.tolerance=1e-4")
 
 
@@ -253,8 +277,8 @@ def test_a_run_that_several_rows_ask_for_is_made_once(monkeypatch):
     repeats = {f"{run[0]:.0e}": run[-1] for run in made if run[1] == 9}
     assert repeats == dict.fromkeys(repeats, 3) | {"1e-07": 1, "1e-08": 1}
     assert at["points", 9].best == min(at["points", 9].seconds)
-    # 9 tolerances, the reference and its check, 3 more levels of points, 4 of epsilon, 2 twins
-    assert len(made) == 9 + 2 + 3 + 4 + 2
+    # 9 tolerances, the reference and its check, 3 more levels of points, 4 of epsilon, one twin
+    assert len(made) == 9 + 2 + 3 + 4 + 1
 
 
 def test_a_process_that_is_killed_is_told_in_its_row(monkeypatch):
