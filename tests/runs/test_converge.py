@@ -150,9 +150,32 @@ def test_report_is_a_table_a_csv_and_a_picture(here):
     assert (here / "report.png").read_bytes()[:4] == b"\x89PNG"
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize(("size", "columns"), [((12.0, 4.0), 3), ((3.4, 8.0), 1)])
+def test_the_picture_has_the_size_asked_for_and_its_panels_lie_as_it_is_wide(
+    in_time, tmp_path, size, columns
+):
+    pytest.importorskip("matplotlib")
+    from matplotlib.image import imread
+
+    from rodsim.plotting import style
+    from rodsim.plotting.convergence import plot_study
+
+    kept = []
+    sheet = style.Sheet(size, 50, "Title")
+    draw = sheet.figure
+    object.__setattr__(sheet, "figure", lambda *words: kept.append(draw(*words)) or kept[-1])
+    plot_study(in_time[0], tmp_path / "a.png", sheet)
+    assert imread(tmp_path / "a.png").shape[:2] == (50 * size[1], 50 * size[0])
+    lefts = {round(axis.get_position().x0, 3) for axis in kept[0].axes}
+    assert len(lefts) == columns
+    with pytest.raises(UsageError, match="too small"):
+        plot_study(in_time[0], tmp_path / "a.png", style.Sheet((2.0, 1.0)))
+
+
 def test_earlier_reports_are_renamed(here):
     (here / "report.csv").write_text("mine")
-    done = call(*COMMAND, "-o", "report", "--set", "time.tolerance=0.5")
+    done = call(*COMMAND, "-o", "report", "--set", "time.tolerance=0.5", "--size", "300x90")
     assert done.exit_code == 0, done.output
     assert "the earlier report.csv is now report.1.csv" in done.stderr
     assert (here / "report.1.csv").read_text() == "mine"
