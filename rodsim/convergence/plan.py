@@ -64,7 +64,7 @@ def _time(case, limits, timed, whole):
     reference, check = (
         Row("time", "rkc", value, rows.rkc(value), rows.guess(case, limits.rate, value))
         for value in (
-            max(rows.TIGHTEST, case.time.tolerance * factor)
+            max(rows.TIGHTEST, float(f"{case.time.tolerance * factor:.6g}"))
             for factor in (rows.REFERENCE, rows.CHECK)
         )
     )
