@@ -10,10 +10,9 @@ import ctypes
 import subprocess
 import tempfile
 from pathlib import Path
-from time import perf_counter
 
 import numpy as np
-from common import Timed, benchmark, interleaved
+from common import Timed, benchmark, curve, interleaved
 from tables import Spread, Table
 
 SIZES = (76, 200, 600, 2000)
@@ -22,54 +21,41 @@ HAND = {"hand_divide": 0, "hand_estimate": 1}
 SAMPLE = 2e-3  # seconds of calls in one call: what is around them does not count
 
 
-@benchmark(full=9, short=3)
+@benchmark(full=21, short=5)
 def main(quick, repeats):
     """Measure the sum in free fluid, three-dimensional, algebraic7, beside one written by hand."""
     import numba
 
+    from rodsim.flows.free import SPATIAL_7
+
     numba.set_num_threads(1)
-    begin = perf_counter()
-    calls = {name: repeated(kernel) for name, kernel in kernels().items()}
-    if has_avx512():
-        calls |= by_hand()
-    tables = compared(calls, repeats, "the sum")
-    tables += compared({n: repeated(k) for n, k in kernels(other=True).items()}, repeats, "others")
-    print(f"{perf_counter() - begin:.0f} s")
-    return tables, None
-
-
-def compared(calls, repeats, label):
-    """Return the tables of ns per pair, ratios to the last call, errors against the exact sum."""
-    times, errors = {}, []
+    calls = {"ours": repeated(SPATIAL_7)} | by_hand()
+    names = {"points": "M", **{name: name.replace("_", " ") for name in calls}}
+    times, ratios, errors = [], [], []
     for size in SIZES:
-        scene = ring(size)
+        scene, row = ring(size), {"points": size}
         count = max(1, round(SAMPLE / (2e-9 * size**2)))
         timers = {name: Timed(once(call, count, scene)) for name, call in calls.items()}
-        rounds = interleaved(timers, repeats, f"M = {size}")
-        times[size] = {name: np.array(rounds[name]) / count for name in calls}
-        if label == "the sum":
-            errors.append({"points": size, **error_row(calls, scene)})
-    names = {"points": "M", **{name: name.replace("_", " ") for name in calls}}
-    rows = [
-        {"points": size} | {n: Spread.of(t, 1e9 / size**2) for n, t in times[size].items()}
-        for size in SIZES
+        found = {n: np.array(t) for n, t in interleaved(timers, repeats, f"M = {size}").items()}
+        best = found[list(calls)[-1]]
+        times.append(row | {n: Spread.of(t, 1e9 / (count * size**2)) for n, t in found.items()})
+        ratios.append(row | {n: Spread.of(t / best) for n, t in found.items()})
+        errors.append(row | error_row(calls, scene))
+    tables = [
+        Table("The sum by one core, ns per pair", names, times),
+        Table("Ratio to the last, round by round", names, ratios),
+        Table("Largest error of u, w over the largest u, w, against 80 bits", names, errors),
     ]
-    base = list(calls)[-1]
-    ratios = [
-        {"points": size} | {n: Spread.of(t / times[size][base]) for n, t in times[size].items()}
-        for size in SIZES
-    ]
-    return [
-        Table(f"{label}, ns per pair", names, rows),
-        Table(f"over {names[base]}, round by round", names, ratios),
-        Table("largest error of u, w over the largest u, w; against 80 bits", names, errors),
-    ]
+    return tables, lambda *axes: draw(times, names, *axes)
 
 
-def kernels(other=False):
-    from sum_variants import other_sums, variants
-
-    return other_sums() if other else variants()
+def draw(rows, names, left, right):
+    """Left: ns per pair against M."""
+    for name in list(names)[1:]:
+        curve(left, rows, "points", name, label=names[name])
+    left.set(xscale="log", xlabel="M", ylabel="ns per pair", ylim=(0, None))
+    left.legend()
+    right.set_axis_off()
 
 
 def repeated(kernel):
@@ -84,15 +70,12 @@ def repeated(kernel):
     return repeat
 
 
-def has_avx512():
-    """Tell whether this processor has vectors of 512 bits."""
+def by_hand():
+    """Compile ``hand.c`` and return its functions as :func:`repeated` does, if they can run."""
     import llvmlite.binding
 
-    return bool(llvmlite.binding.get_host_cpu_features().get("avx512f"))
-
-
-def by_hand():
-    """Compile ``hand.c`` and return its functions as :func:`repeated` does."""
+    if not llvmlite.binding.get_host_cpu_features().get("avx512f"):
+        return {}
     source = Path(__file__).with_name("hand.c")
     with tempfile.TemporaryDirectory() as folder:
         library = Path(folder) / "hand.so"

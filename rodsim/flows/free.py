@@ -24,6 +24,7 @@ from numba import prange
 
 from rodsim.compiled.flags import inline, parallel_kernel
 from rodsim.compiled.kernels import pair_sum, part
+from rodsim.compiled.wide import WIDE, inverse_root, unit_of, whole_vectors
 from rodsim.flows.blobs import (
     ALGEBRAIC7,
     ALGEBRAIC9,
@@ -37,21 +38,18 @@ EIGHT_PI = 8.0 * math.pi
 
 
 @inline
-def add_pair(blob, planar, angular, r, g, m, e2, sums):
+def add_pair(blob, planar, angular, r, g, m, inverse, e2, sums):
     """Return ``sums``, 8 pi mu (u, w), and what a source adds that has g, m and is r away.
 
-    ``blob``, ``planar``, ``angular`` are constants that choose what is compiled.
+    ``inverse`` is 1/R. Constants, ``blob``, ``planar``, ``angular``, choose what is compiled.
     """
     rx, ry, rz = r
     gx, gy, gz = g
     mx, my, mz = m
     ux, uy, uz, wx, wy, wz = sums
-    r2 = ry * ry + rz * rz
     gr = gy * ry + gz * rz
     if not planar:
-        r2 += rx * rx
         gr += gx * rx
-    inverse = inverse_distance(r2, e2)
     h1, h2, q = stokeslet_scalars(blob, inverse, e2)
     along = h2 * gr
     q *= 0.5
@@ -74,10 +72,11 @@ def add_pair(blob, planar, angular, r, g, m, e2, sums):
 
 
 @inline
-def add_up(blob, planar, angular, x, y, z, sources, loads, e2):
+def add_up(blob, planar, angular, wide, x, y, z, sources, loads, e2):
     """Return 8 pi mu (u, w) at one target, from all sources; constants choose the sum.
 
-    The last bits depend on the order in which a source is read.
+    ``wide``: 1/R by :mod:`rodsim.compiled.wide`. The last bits depend on the order in which a
+    source is read.
     """
     sums = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     for k in range(sources.shape[1]):
@@ -85,7 +84,11 @@ def add_up(blob, planar, angular, x, y, z, sources, loads, e2):
         gy, gz, mx = loads[1, k], loads[2, k], loads[3, k]
         rx, gx, my, mz = x - sources[0, k], loads[0, k], loads[4, k], loads[5, k]
         r, g, m = (rx, ry, rz), (gx, gy, gz), (mx, my, mz)
-        sums = add_pair(blob, planar, angular, r, g, m, e2, sums)
+        r2 = ry * ry + rz * rz
+        if not planar:
+            r2 += rx * rx
+        inverse = inverse_root(r2 + e2) if wide else inverse_distance(r2, e2)
+        sums = add_pair(blob, planar, angular, r, g, m, inverse, e2, sums)
     return sums
 
 
@@ -94,18 +97,23 @@ def _sum(blob, planar, angular):
 
     @parallel_kernel
     def fused_sum(targets, sources, loads, epsilon, viscosity, out):
-        e2 = epsilon * epsilon
-        scale = 1.0 / (EIGHT_PI * viscosity)
+        unit = 1.0
+        if WIDE:
+            unit = unit_of(epsilon)
+            sources, loads = whole_vectors(sources, loads, unit)
+        e2 = unit * epsilon * (unit * epsilon)
+        scale = unit / (EIGHT_PI * viscosity)
         for i in prange(targets.shape[1]):
-            x, y, z = targets[0, i], targets[1, i], targets[2, i]
-            ux, uy, uz, wx, wy, wz = add_up(blob, planar, angular, x, y, z, sources, loads, e2)
+            x, y, z = unit * targets[0, i], unit * targets[1, i], unit * targets[2, i]
+            six = add_up(blob, planar, angular, WIDE, x, y, z, sources, loads, e2)
+            ux, uy, uz, wx, wy, wz = six
             out[0, i] += scale * ux
             out[1, i] += scale * uy
             out[2, i] += scale * uz
             if angular:
-                out[3, i] += scale * wx
-                out[4, i] += scale * wy
-                out[5, i] += scale * wz
+                out[3, i] += unit * scale * wx
+                out[4, i] += unit * scale * wy
+                out[5, i] += unit * scale * wz
 
     return fused_sum
 

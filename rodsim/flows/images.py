@@ -26,6 +26,7 @@ import math
 import numpy as np
 
 from rodsim.compiled.flags import inline
+from rodsim.compiled.wide import inverse_root
 from rodsim.flows.blobs import dipole_scalars, image_scalars, stokeslet_scalars
 
 
@@ -40,12 +41,17 @@ def inverse_distances(r, zh, e2):
 
 
 @inline
-def _all_inverse_distances(x, y, z, sources, wall_height, e2, inverses):
+def _all_inverse_distances(wide, x, y, z, sources, wall_height, e2, inverses):
     """Fill ``inverses`` with 1/R and 1/R* of all sources."""
     for k in range(sources.shape[1]):
         h = sources[2, k] - wall_height
         r = x - sources[0, k], y - sources[1, k], z - h
-        inverses[0, k], inverses[1, k] = inverse_distances(r, z * h, e2)
+        if wide:
+            rx, ry, d = r
+            r2 = rx * rx + ry * ry + d * d + e2
+            inverses[0, k], inverses[1, k] = inverse_root(r2), inverse_root(r2 + 4.0 * (z * h))
+        else:
+            inverses[0, k], inverses[1, k] = inverse_distances(r, z * h, e2)
 
 
 @inline
@@ -127,11 +133,14 @@ def with_v(z, sums):
 
 
 @inline
-def add_up(blob, planar, angular, x, y, z, sources, loads, wall_height, e2):
-    """Return 8 pi mu (u, w) at one target, from all sources; constants choose the sum."""
+def add_up(blob, planar, angular, wide, x, y, z, sources, loads, wall_height, e2):
+    """Return 8 pi mu (u, w) at one target, from all sources; constants choose the sum.
+
+    ``wide``: 1/R by :mod:`rodsim.compiled.wide`.
+    """
     z = z - wall_height
     inverses = np.empty((2, sources.shape[1]))
-    _all_inverse_distances(x, y, z, sources, wall_height, e2, inverses)
+    _all_inverse_distances(wide, x, y, z, sources, wall_height, e2, inverses)
     sums = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     for k in range(sources.shape[1]):
         h = sources[2, k] - wall_height

@@ -16,6 +16,7 @@ from numba import prange
 from rodsim.compiled.constants import ON_WALL
 from rodsim.compiled.flags import parallel_kernel, unsigned
 from rodsim.compiled.kernels import pair_sum, part
+from rodsim.compiled.wide import WIDE, unit_of, whole_vectors
 from rodsim.flows.blobs import (
     ALGEBRAIC7,
     ALGEBRAIC9,
@@ -34,13 +35,19 @@ def _sum(blob, planar, angular):
 
     @parallel_kernel
     def fused_sum(targets, sources, loads, epsilon, viscosity, wall_height, out):
-        e2 = epsilon * epsilon
-        scale = 1.0 / (EIGHT_PI * viscosity)
+        unit = 1.0
+        if WIDE:
+            unit = unit_of(epsilon)
+            sources, loads = whole_vectors(sources, loads, unit)
+        e2, height = unit * epsilon * (unit * epsilon), unit * wall_height
+        scale = unit / (EIGHT_PI * viscosity)
         for i in prange(targets.shape[1]):
-            x, y, z = targets[0, i], targets[1, i], targets[2, i]
-            six = add_up(blob, planar, angular, x, y, z, sources, loads, wall_height, e2)
-            for c in range(out.shape[0]):
+            x, y, z = unit * targets[0, i], unit * targets[1, i], unit * targets[2, i]
+            six = add_up(blob, planar, angular, WIDE, x, y, z, sources, loads, height, e2)
+            for c in range(3):
                 out[c, i] += scale * six[c]
+            for c in range(3, out.shape[0]):
+                out[c, i] += unit * scale * six[c]
 
     return fused_sum
 

@@ -86,33 +86,53 @@ def test_what_the_user_has_set_is_left_alone(name, tmp_path):
     assert done.stdout.strip() == str(tmp_path)
 
 
+NAMES = "sse2 sse3 ssse3 sse4.1 sse4.2 avx avx2 fma avx512f avx512dq avx512vl avx512bw popcnt"
 WIDE = """
+import re, sys
 import llvmlite.binding as llvm
 class Server(dict):  # what LLVM finds on an Intel server
     flatten = lambda self: ",".join(f"+{name}" for name in self)
-names = "sse2 sse3 ssse3 sse4.1 sse4.2 avx avx2 fma avx512f avx512dq avx512vl avx512bw popcnt"
+names = "NAMES"
 llvm.get_host_cpu_features = lambda: Server.fromkeys(names.split(), True)
 llvm.get_host_cpu_name = lambda: "icelake-server"
-from rodsim.compiled.settings import prepare
-prepare()
-import re
+if sys.argv[1] == "command":
+    from rodsim.compiled.settings import prepare
+    prepare()
 from numba import types
 from rodsim.flows.free import _sum
 plane = types.Array(types.float64, 2, "C")
-kernel = _sum(7, False, True)  # compiled, never run
+kernel = _sum(7, True, True)  # compiled, never run
 kernel.compile((plane, plane, plane, types.float64, types.float64, plane))
 code = "".join(kernel.inspect_asm().values())
-print({bits: len(re.findall(rf"sqrtpd.*%{bits}mm", code)) > 0 for bits in "yz"})
-"""
+found = {}
+for name, pattern in (("wide", "fmadd.*%zmm"), ("root", "sqrtpd"), ("estimate", "rsqrtps.*%ymm")):
+    found[name] = len(re.findall(pattern, code)) > 0
+print(found)
+""".replace("NAMES", NAMES)
 
 
 @pytest.mark.compiled
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="vectors of x86")
-def test_the_command_lets_sums_have_vectors_of_512_bits(tmp_path):
+@pytest.mark.parametrize("who", ["command", "library"])
+def test_sums_have_vectors_of_512_bits_and_estimates_of_roots(tmp_path, who):
+    found = compiled_on_a_server(tmp_path, who)
+    assert found == "{'wide': True, 'root': False, 'estimate': True}"
+
+
+@pytest.mark.compiled
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="vectors of x86")
+def test_vectors_of_256_bits_stay_where_the_user_asks_for_them(tmp_path):
+    features = ",".join(f"+{name}" for name in (*NAMES.split(), "prefer-256-bit"))
+    found = compiled_on_a_server(tmp_path, "command", NUMBA_CPU_FEATURES=features)
+    assert found == "{'wide': False, 'root': True, 'estimate': False}"
+
+
+def compiled_on_a_server(folder, who, **asked):
+    """Return what the code of a sum has that is compiled for an Intel server."""
     environment = {k: v for k, v in os.environ.items() if not k.startswith("NUMBA_CPU_")}
     done = subprocess.run(
-        [sys.executable, "-c", WIDE],
-        env={**environment, "NUMBA_CACHE_DIR": str(tmp_path)},
+        [sys.executable, "-c", WIDE, who],
+        env={**environment, "NUMBA_CACHE_DIR": str(folder), **asked},
         capture_output=True, text=True, check=True,
     )  # fmt: skip
-    assert done.stdout.strip() == "{'y': False, 'z': True}"
+    return done.stdout.strip()

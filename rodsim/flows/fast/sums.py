@@ -109,10 +109,10 @@ def _fast_sum(walled, blob, planar):
                         x, y, z = at[0, i], at[1, i], at[2, i]
                         if walled:
                             six = add_up_at_wall(
-                                blob, planar, True, x, y, z, sources, theirs, wall, e2
+                                blob, planar, True, False, x, y, z, sources, theirs, wall, e2
                             )
                         else:
-                            six = add_up(blob, planar, True, x, y, z, sources, theirs, e2)
+                            six = add_up(blob, planar, True, False, x, y, z, sources, theirs, e2)
                         for c in range(6):
                             to[c, i] += factor * six[c]
 
@@ -146,9 +146,11 @@ def _group_sum(walled, blob, angular):
                     i = order[t]
                     x, y, z = targets[0, i], targets[1, i], targets[2, i]
                     if walled:
-                        six = add_up_at_wall(blob, False, angular, x, y, z, sources, g, wall, e2)
+                        six = add_up_at_wall(
+                            blob, False, angular, False, x, y, z, sources, g, wall, e2
+                        )
                     else:
-                        six = add_up(blob, False, angular, x, y, z, sources, g, e2)
+                        six = add_up(blob, False, angular, False, x, y, z, sources, g, e2)
                     for c in range(out.shape[0]):
                         out[c, i] += scale * six[c]
 
