@@ -38,6 +38,16 @@ EIGHT_PI = 8.0 * math.pi
 
 
 @inline
+def squared(planar, r):
+    """Return r^2, of r_y and r_z alone where all are in one plane."""
+    rx, ry, rz = r
+    r2 = ry * ry + rz * rz
+    if not planar:
+        r2 += rx * rx
+    return r2
+
+
+@inline
 def add_pair(blob, planar, angular, r, g, m, inverse, e2, sums):
     """Return ``sums``, 8 pi mu (u, w), and what a source adds that has g, m and is r away.
 
@@ -84,9 +94,7 @@ def add_up(blob, planar, angular, wide, x, y, z, sources, loads, e2):
         gy, gz, mx = loads[1, k], loads[2, k], loads[3, k]
         rx, gx, my, mz = x - sources[0, k], loads[0, k], loads[4, k], loads[5, k]
         r, g, m = (rx, ry, rz), (gx, gy, gz), (mx, my, mz)
-        r2 = ry * ry + rz * rz
-        if not planar:
-            r2 += rx * rx
+        r2 = squared(planar, r)
         inverse = inverse_root(r2 + e2) if wide else inverse_distance(r2, e2)
         sums = add_pair(blob, planar, angular, r, g, m, inverse, e2, sums)
     return sums

@@ -16,6 +16,7 @@ import numpy as np
 from numba import cuda, float64
 
 from rodsim.flows import free, images
+from rodsim.flows.blobs import inverse_distance
 
 THREADS = 128  # of a block
 BLOCKS = 1024  # what fills a card: where there are fewer, sources are shared out
@@ -39,7 +40,8 @@ def add_source(at_wall, blob, planar, angular, x, y, z, tile, k, wall, e2, sums)
         both = images.inverse_distances(r, z * h, e2)
         return images.add_pair(blob, planar, angular, r, z, h, g, m, both, e2, sums)
     r = x - tile[0, k], y - tile[1, k], z - tile[2, k]
-    ux, uy, uz, wx, wy, wz = free.add_pair(blob, planar, angular, r, g, m, e2, sums[:6])
+    inverse, six = inverse_distance(free.squared(planar, r), e2), sums[:6]
+    ux, uy, uz, wx, wy, wz = free.add_pair(blob, planar, angular, r, g, m, inverse, e2, six)
     return ux, uy, uz, wx, wy, wz, 0.0, 0.0, 0.0
 
 
