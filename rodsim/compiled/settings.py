@@ -52,7 +52,7 @@ def prepare() -> None:
 def _allow_wide_vectors():
     """Let LLVM use vectors of 512 bits where there are any: on Intel's processors it stops at 256.
 
-    What limits the sums are square roots and divisions, of which a wider vector makes more at once.
+    The sums have them anyway (``wide.py``); this is for all other kernels.
     """
     import llvmlite.binding
 
