@@ -82,6 +82,7 @@ def test_a_block_has_the_threads_that_trials_chose_and_the_setting_is_restored()
     with threads_for(pairs, 1, seen.append), threads_for(1e-6 / PAIR_SECONDS, None, seen.append):
         assert numba.get_num_threads() == 1
     assert len(seen) == tried
+    assert numba.get_num_threads() == before
 
 
 def test_more_work_never_gets_fewer_threads():
