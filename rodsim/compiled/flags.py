@@ -46,7 +46,7 @@ PARALLEL = (
 )  # fmt: skip
 SUM_FLAGS = {"reassoc", "contract", "arcp", "nsz"}
 
-kernel = partial(cached_njit, error_model="numpy")
+kernel = partial(cached_njit, error_model="numpy", no_cfunc_wrapper=True)
 parallel_kernel = partial(cached_njit, error_model="numpy", parallel=True, fastmath=SUM_FLAGS)
 summed = partial(cached_njit, error_model="numpy", fastmath=SUM_FLAGS)  # the same, reordered
 threaded_kernel = partial(
@@ -56,6 +56,7 @@ threaded_kernel = partial(
     parallel={name: name == "prange" for name in PARALLEL},
 )
 unsigned = kernel  # without a signature: compiled with whatever calls it
+within = partial(kernel, no_cpython_wrapper=True)  # the same, and never called from Python
 inline = partial(cached_njit, error_model="numpy", inline="always")
 
 

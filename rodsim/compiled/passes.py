@@ -4,18 +4,18 @@ import math
 
 import numpy as np
 
-from rodsim.compiled.flags import unsigned
+from rodsim.compiled.flags import unsigned, within
 from rodsim.compiled.rotations import rotation_vector_rate
 
 
-@unsigned
+@within
 def weighted_sum(a, x, b, y, out):
     """out = a x + b y."""
     for i in range(np.uint64(out.size)):
         out[i] = a * x[i] + b * y[i]
 
 
-@unsigned
+@within
 def _largest_rms(values, weights, first, count):
     """Return the largest weighted root mean square of a rod's numbers, or of all tracers'.
 
@@ -61,14 +61,14 @@ def remaining(size, c, memory, y, velocities, f0, g, weights, first, count, f1, 
     return _largest_rms(error, weights, first, count)
 
 
-@unsigned
+@within
 def probe(size, direction, weights, y):
     """y = size direction/weights, in the first ``weights.size`` numbers."""
     for i in range(np.uint64(weights.size)):
         y[i] = size * direction[i] / weights[i]
 
 
-@unsigned
+@within
 def image(size, shifted, rate, weights, out):
     """out = weights (shifted - rate)/size, in the first ``weights.size`` numbers."""
     for i in range(np.uint64(weights.size)):

@@ -3,6 +3,7 @@
 import os
 import threading
 from contextlib import contextmanager
+from time import perf_counter
 
 import numba
 
@@ -11,10 +12,12 @@ from rodsim.errors import UsageError
 
 PAIR_SECONDS = 2e-9  # one pair of the sums on one core
 PLANAR, WITHOUT_W, AT_WALL = 0.5, 0.55, 2.0  # a pair of other sums, in such pairs: measured too
-# What each of several threads adds to a sum: waking one that sleeps in GNU OpenMP or in Numba's
-# work queue costs far more than in tbb. Measured, docs/notes/performance.md.
-LAUNCH_SECONDS = {"tbb": 2.5e-6, "omp": 8e-5, "workqueue": 8e-5}
+# What n threads add to a sum: that they are woken at all, and each of them. Waking those that sleep
+# in GNU OpenMP or in Numba's work queue costs more than in tbb. docs/notes/performance.md.
+LAUNCH_SECONDS = {"tbb": (0.0, 2.5e-6), "omp": (4e-5, 2.5e-6), "workqueue": (1.2e-4, 5e-6)}
 NO_GAIN = 1.1  # what less time than this would save is not worth more threads
+SHORT, LONG = 1e-5, 3e-3  # serial seconds: of no use to more threads; long beside any launch
+TRIALS, ENOUGH = 4, 1e-2  # timed calls on each number of threads; seconds after which they end
 _one_at_a_time = threading.RLock()
 _started_in = {}  # the layer, and the process its threads were started in
 
@@ -75,27 +78,58 @@ def _gnu():
 
 
 @contextmanager
-def threads_for(pairs: float, asked: int | None = None):
+def threads_for(pairs: float, asked: int | None = None, trial=None):
     """Run a block with the threads that sums over ``pairs`` are worth; then restore the setting.
 
-    ``asked`` overrules the choice, up to the number that Numba was started with.
+    ``asked`` overrules the choice, up to the number that Numba was started with. ``trial`` : called
+    for one evaluation of these sums, which a few calls on some numbers of threads then decide:
+    what a launch costs is four times as much on one machine as on another. No bits depend on it.
     """
     with computing():
         before = numba.get_num_threads()
-        numba.set_num_threads(_choose(pairs, asked))
         try:
+            numba.set_num_threads(_choose(pairs, asked, trial))
             yield
         finally:
             numba.set_num_threads(before)
 
 
-def _choose(pairs, asked):
-    most = numba.config.NUMBA_NUM_THREADS
+def _choose(pairs, asked, trial):
+    most, serial = numba.config.NUMBA_NUM_THREADS, PAIR_SECONDS * pairs
     if asked is not None and asked < 1:
         raise UsageError(f"threads must be 1 or more, not {asked}")
     if asked is not None:
         return min(asked, most)
-    return threads_worth(PAIR_SECONDS * pairs, _layer(), most)
+    if trial is None or not SHORT < serial < LONG:
+        return threads_worth(serial, _layer(), most)
+    return quickest(most, lambda count: _seconds(trial, count))
+
+
+def _seconds(trial, count):
+    """Return the seconds of a trial call on some threads, the shortest of a few."""
+    numba.set_num_threads(count)
+    trial()  # threads are started, and find their cores
+    samples = []
+    while len(samples) < TRIALS and sum(samples) < ENOUGH:
+        begin = perf_counter()
+        trial()
+        samples.append(perf_counter() - begin)
+    return min(samples)
+
+
+def quickest(most: int, seconds) -> int:
+    """Return the fewest of 1, 2, 4, ... and ``most`` threads that come within a tenth of the best.
+
+    ``seconds`` : called with such a number, in turn, until the time has grown by a tenth.
+    """
+    found, count = {}, 1
+    while True:
+        found[count] = seconds(count)
+        if count == most or found[count] > NO_GAIN * min(found.values()):
+            break
+        count = min(2 * count, most)
+    best = min(found.values())
+    return next(n for n, each in found.items() if each <= NO_GAIN * best)
 
 
 def pairs_worth(points: int, tracers: int, planar: bool, at_wall: bool) -> float:
@@ -110,10 +144,10 @@ def pairs_worth(points: int, tracers: int, planar: bool, at_wall: bool) -> float
 def threads_worth(serial: float, layer: str, most: int) -> int:
     """Return how many threads a sum is worth that takes ``serial`` seconds on one, up to ``most``.
 
-    On n > 1 it takes serial/n + n launch. The fewest count that come within a tenth of the best:
-    others can use the rest, and no number is chosen that is slower than a smaller one.
+    On n > 1 it takes serial/n + waking + n launch. The fewest count that come within a tenth of the
+    best: others can use the rest, and no number is chosen that is slower than a smaller one.
     """
-    launch = LAUNCH_SECONDS.get(layer, LAUNCH_SECONDS["omp"])
-    seconds = [serial, *(serial / n + n * launch for n in range(2, most + 1))]
+    waking, launch = LAUNCH_SECONDS.get(layer, LAUNCH_SECONDS["omp"])
+    seconds = [serial, *(serial / n + waking + n * launch for n in range(2, most + 1))]
     best = min(seconds)
     return next(n for n, each in enumerate(seconds, 1) if each <= NO_GAIN * best)

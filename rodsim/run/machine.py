@@ -33,7 +33,8 @@ class Machine:
         """Return the context in which sums run with the threads this scene is worth."""
         scene = self.system.scene
         tracers, at_wall = scene.initial.tracer.shape[1], scene.wall is not None
-        return threads_for(pairs_worth(scene.rods.points, tracers, scene.planar, at_wall), asked)
+        pairs = pairs_worth(scene.rods.points, tracers, scene.planar, at_wall)
+        return threads_for(pairs, asked, self.system.rehearse)
 
     def step_warnings(self) -> list:
         """Return problems of a fixed step near its limit; raises CaseError above it."""

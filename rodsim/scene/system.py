@@ -103,6 +103,12 @@ class RodSystem:
         self._call(evaluate_at, t, base, y, out, False)
         return out
 
+    def rehearse(self) -> None:
+        """Evaluate the initial state once, uncounted."""
+        state, before = self.scene.initial, (self.evaluations, self.seconds)
+        self.velocities(state.time, state, self.zeros(), self.zeros())
+        self.evaluations, self.seconds = before
+
     def product(self, base: State, rate: np.ndarray, direction: np.ndarray, size: float, out):
         """Write J ``direction`` at a state into ``out``, both in the scaled norm (6 N).
 
