@@ -10,9 +10,9 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from importlib import import_module
-from typing import Any
+from typing import Annotated, Any
 
 KINDS = (
     "rodsim.forces.elastic",
@@ -85,7 +85,7 @@ def with_words(model: type) -> type:
 
     fields = {
         kind.word: (
-            kind.words | None,
+            Annotated[kind.words | None, _Late(kind.words | None)],
             Field(
                 None,
                 description=kind.about,
@@ -97,3 +97,26 @@ def with_words(model: type) -> type:
     }
     names = {"__module__": model.__module__, "__doc__": model.__doc__}
     return create_model(model.__name__, __base__=model, **names, **fields)
+
+
+class _Late:
+    """What makes the validator of a word when a case first has it: most cases have few words."""
+
+    def __init__(self, words: Any):
+        self.words = words
+
+    @cached_property
+    def _adapter(self):
+        from pydantic import TypeAdapter
+
+        return TypeAdapter(self.words)
+
+    def __get_pydantic_core_schema__(self, source, handler):
+        from pydantic_core import core_schema
+
+        return core_schema.no_info_plain_validator_function(
+            lambda value: self._adapter.validate_python(value)
+        )
+
+    def __get_pydantic_json_schema__(self, schema, handler):
+        return handler(self._adapter.core_schema)

@@ -80,4 +80,7 @@ def _to_draft_07(node: Any) -> Any:
         return node
     names = {"$defs": "definitions", "prefixItems": "items"}
     closed = {"additionalProperties": False} if "patternProperties" in node else {}
-    return {names.get(key, key): _to_draft_07(item) for key, item in node.items()} | closed
+    changed = {names.get(key, key): _to_draft_07(item) for key, item in node.items()} | closed
+    if all("$ref" in item or item == {"type": "null"} for item in changed.get("anyOf", [{}])):
+        changed.pop("title", None)  # what is referred to has one
+    return changed

@@ -18,6 +18,13 @@ from rodsim.scene.build import build_scene
 build_scene(load_case(sys.argv[1]))
 print(sorted({"h5py", "numba", "rodsim.output.reader"} & set(sys.modules)))
 """
+LATE = """
+import sys
+from rodsim.case import Case, load_case
+for path in sys.argv[1:]:
+    load_case(path)
+    print("_adapter" in vars(Case.model_fields["contact"].metadata[0]))
+"""
 COMPILED = """
 import sys
 from rodsim.compiled.settings import prepare
@@ -50,6 +57,11 @@ def said_by(code, *arguments):
 
 def test_a_case_is_checked_without_numba_and_hdf5():
     assert said_by(VALIDATE, CONFIGS / "closed_ring.yaml") == "[]"
+
+
+def test_the_validator_of_a_word_is_made_when_a_case_has_it():
+    said = said_by(LATE, CONFIGS / "closed_ring.yaml", CONFIGS / "plectoneme.yaml")
+    assert said.split() == ["False", "True"]
 
 
 def test_an_output_is_described_without_what_reads_a_case(tmp_path):
