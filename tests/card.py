@@ -6,9 +6,10 @@ A block has few threads there, for each is a thread of Python. The kernels are t
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 START = """
+import sys
+sys.setswitchinterval(1e-5)  # who waits for the threads of a block does so by asking
 import rodsim.flows.card.kernels as kernels
 kernels.THREADS, kernels.BLOCKS, kernels.LEAST = 3, 4, 3
 """
@@ -19,7 +20,7 @@ def simulated(code, folder, *arguments):
     """Run code on the simulator; return what it printed."""
     done = subprocess.run(
         [sys.executable, "-c", START + code, *map(str, arguments)],
-        cwd=folder, env={**os.environ, **SIMULATED, "PYTHONPATH": str(Path(__file__).parent)},
+        cwd=folder, env={**os.environ, **SIMULATED},
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
