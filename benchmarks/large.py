@@ -27,6 +27,7 @@ COLUMNS = {
     "near": "pairs a point",
     "bytes": "bytes a point",
 }
+ACCURACY_COLUMNS = {key: COLUMNS[key] for key in ("scene", "accuracy", "fast", "u", "w", "near")}
 EVEN = {
     "scene": "scene",
     "accuracy": "asked",

@@ -84,16 +84,19 @@ class Solve:
         return machine.integrator.steps(self.scene.initial, self.case.time.end)
 
     def __call__(self):
-        """Return wall and CPU seconds, those of one sum, steps (rejected too) and evaluations."""
+        """Return what :meth:`on` does, and the seconds of one sum."""
+        return {**self.on(self.threads), "sum": self.sum()}
+
+    def on(self, threads):
+        """Return wall and CPU seconds, steps (rejected too) and evaluations of a solve."""
         wall, cpu = time.perf_counter(), time.process_time()
         machine = self._machine()
-        with machine.threads(self.threads):
+        with machine.threads(threads):
             for step in self._steps(machine):
                 machine.watch.check(step)
         return {
             "wall": time.perf_counter() - wall,
             "cpu": time.process_time() - cpu,
-            "sum": self.sum(),
             "steps": machine.integrator.accepted + machine.integrator.rejected,
             "evaluations": machine.system.evaluations,
         }

@@ -1,7 +1,7 @@
 """Work against precision of the adaptive method: evaluations and largest error, by tolerance.
 
     python benchmarks/work_precision.py [SCENE ...] [--decades 2 7] [--per-decade 3]
-    python benchmarks/work_precision.py --all [SCENE ...] [--budget 20] [-o work-precision]
+    python benchmarks/work_precision.py --all [SCENE ...] [--budget 60] [-o work-precision]
 
 The ring and the open rod are held against tests/reference, the flagellum against a run of itself
 at a tolerance of 1e-9 (half a minute). Evaluations include rejected steps and estimates of the
@@ -65,11 +65,13 @@ def main():
     parser.add_argument("--decades", nargs=2, type=float, default=(2.0, 7.0))
     parser.add_argument("--per-decade", type=int, default=3)
     parser.add_argument("--all", action="store_true", help="all shipped scenes, or those named")
-    parser.add_argument("--budget", type=float, default=20.0, help="seconds for a scene, about")
+    parser.add_argument("--budget", type=float, default=60.0, help="seconds for a scene, about")
     parser.add_argument("-o", "--output", default="work-precision", help="name of .csv and .png")
+    parser.add_argument("--from", nargs="+", default=[], dest="paths", metavar="CSV",
+                        help="table and picture of what was measured before")  # fmt: skip
     options = parser.parse_args()
     if options.all:
-        all_scenes.main(options.scenes, options.budget, options.output)
+        all_scenes.main(options.scenes, options.budget, options.output, options.paths)
         return
     low, high = options.decades
     count = round((high - low) * options.per_decade) + 1

@@ -69,6 +69,7 @@ SECTIONS = {
     "Tube": "tracers.NAME as a mapping",
     "Time": "time",
     "Output": "output",
+    "Initial": "initial",
     "Rest": "rest",
 }
 LAST = ("rotate", "origin")  # keys that all shapes share

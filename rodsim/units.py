@@ -3,6 +3,7 @@
 from rodsim.errors import UsageError
 
 BOLTZMANN = 1.380649e-23  # J/K, exact
+VISCOSITY = (1, -1, -1)  # its exponents of mass, length, time
 _PREFIXES = {
     "k": 1e3, "": 1.0, "c": 1e-2, "m": 1e-3, "u": 1e-6, "\u00b5": 1e-6, "\u03bc": 1e-6, "n": 1e-9,
     "p": 1e-12, "f": 1e-15, "a": 1e-18,
@@ -67,6 +68,14 @@ def in_si(dimension, units: dict) -> float:
     name, *product = mass_name(units).split()
     mass = SI["force"][name] / length * time**2 if product else SI["mass"][name]
     return mass ** dimension[0] * length ** dimension[1] * time ** dimension[2]
+
+
+def in_water_units(viscosity: float, units: dict) -> str:
+    """Return `` (1 mPa s)`` for a viscosity in a case's units, nothing where they are not known."""
+    try:
+        return f" ({1e3 * viscosity * in_si(VISCOSITY, units):.4g} mPa s)"
+    except KeyError:
+        return ""
 
 
 def thermal_energy(kelvin: float, units: dict) -> float:

@@ -1,5 +1,10 @@
-"""Shared by all tests: the twins are importable, and tests that need the JIT say so."""
+"""Shared by all tests: the twins are importable, and tests that need the JIT say so.
 
+What many processes of the tests need is made once: compiled code that importing the tests takes,
+and the bytecode of rodsim where Python is told to write none beside the source.
+"""
+
+import os
 import sys
 from pathlib import Path
 
@@ -13,6 +18,33 @@ import numba  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parent))
 sys.path.append(str(Path(__file__).parent.parent / "benchmarks"))  # the rival, and the theory
+
+# Modules that compile when they are imported, and the kernels that take longest.
+AHEAD = (
+    "rodsim.blocks.hold:hold",
+    "rodsim.blocks.hold:release",
+    "rodsim.blocks.springs",
+    "rodsim.flows.carried",
+    "rodsim.flows.fast.plan",
+    "rodsim.flows.free:spatial_7",
+    "rodsim.forces.repulsion",
+    "rodsim.forces.surfaces",
+    "rodsim.rest.differences",
+)
+
+
+def pytest_configure(config):
+    """Compile in two processes, before the whole suite, what each worker would for itself."""
+    of_a_worker = hasattr(config, "workerinput")
+    if not of_a_worker and sys.dont_write_bytecode and "NUMBA_CACHE_DIR" in os.environ:
+        # commands that tests start would compile all of rodsim to bytecode, each anew
+        os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+        os.environ["PYTHONPYCACHEPREFIX"] = f"{os.environ['NUMBA_CACHE_DIR']}/bytecode"
+    whole = config.args_source is config.ArgsSource.TESTPATHS
+    if whole and not of_a_worker and config.getoption("numprocesses", None):
+        from rodsim.run.warmup import ensure
+
+        ensure(AHEAD, lambda line: print(line, file=sys.__stderr__), "the tests")
 
 
 def pytest_collection_modifyitems(config, items):

@@ -17,9 +17,8 @@ def writhe(position: np.ndarray, closed: bool = True) -> float:
     Langowski, Biopolymers 54 (2000) 307-317, method 1a). Negative for left-handed coils. Of an
     open rod it is the same sum over its M - 1 segments, no invariant. O(M^2) time and memory.
     """
-    begin, end = _segments(position, closed)
-    angle = _crossing_angles(begin, end, begin, end)
-    return float(angle.sum() / (4.0 * np.pi))
+    segments = _segments(position, closed)
+    return float(_crossing_angles(*_pairs(*segments, *segments)).sum() / (4.0 * np.pi))
 
 
 def linking_number(first: np.ndarray, second: np.ndarray) -> float:
@@ -28,8 +27,8 @@ def linking_number(first: np.ndarray, second: np.ndarray) -> float:
     Gauss's integral, exact for polygons, as in :func:`writhe`. Of a closed rod's own link:
     ``linking_number(X, X + d * D1)`` with d small.
     """
-    angle = _crossing_angles(*_segments(first, True), *_segments(second, True))
-    return float(angle.sum() / (4.0 * np.pi))
+    pairs = _pairs(*_segments(first, True), *_segments(second, True))
+    return float(_crossing_angles(*pairs).sum() / (4.0 * np.pi))
 
 
 def twist(position: np.ndarray, director: np.ndarray, closed: bool = True) -> float:
@@ -60,7 +59,10 @@ def link(position: np.ndarray, director: np.ndarray) -> float:
     A whole number to rounding, where no more than that is lost in the sums. It changes only where
     the rod passes through itself, or where its triads turn half-way round between two points.
     """
-    return twist(position, director) + writhe(position)
+    begin, end = _segments(position, True)
+    i, j = np.triu_indices(len(begin), 1)  # each pair once: the other way round it has the same
+    angle = _crossing_angles(begin[i], end[i], begin[j], end[j])
+    return twist(position, director) + float(angle.sum() / (2.0 * np.pi))
 
 
 def _segments(position, closed):
@@ -87,25 +89,28 @@ def _transport(before, after, vectors):
     return cosine * vectors + np.cross(axis, vectors) + axis * along / (1.0 + cosine)
 
 
+def _pairs(begin, end, other_begin, other_end):
+    """Return segments (M, 3) and others (N, 3) so that all pairs of them are taken, (M, N)."""
+    return begin[:, None], end[:, None], other_begin[None], other_end[None]
+
+
 def _crossing_angles(begin, end, other_begin, other_end):
-    """Return the signed solid angles (M, N) of all pairs of segments; 0 where they share a point.
+    """Return the signed solid angles of pairs of segments (..., 3); 0 where they share a point.
 
     The directions from one segment to the other fill a quadrangle on the sphere, which is cut
     into two triangles: tan(angle/2) = -a.(b x c)/(1 + a.b + b.c + c.a) for unit vectors (van
     Oosterom & Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125-126).
     """
-    r13 = other_begin[None] - begin[:, None]
-    r14 = other_end[None] - begin[:, None]
-    r23 = other_begin[None] - end[:, None]
-    r24 = other_end[None] - end[:, None]
-    apart = np.logical_and.reduce([side.any(axis=2) for side in (r13, r14, r23, r24)])
+    r13, r14 = other_begin - begin, other_end - begin
+    r23, r24 = other_begin - end, other_end - end
+    apart = np.logical_and.reduce([side.any(axis=-1) for side in (r13, r14, r23, r24)])
     r13, r14, r23, r24 = (_unit(side) for side in (r13, r14, r23, r24))
     return np.where(apart, _triangle(r13, r14, r24) + _triangle(r24, r23, r13), 0.0)
 
 
 def _triangle(a, b, c):
-    volume = np.einsum("ijc,ijc->ij", a, np.cross(b, c))
-    pairs = (np.einsum("ijc,ijc->ij", u, v) for u, v in ((a, b), (b, c), (c, a)))
+    volume = np.einsum("...c,...c->...", a, np.cross(b, c))
+    pairs = (np.einsum("...c,...c->...", u, v) for u, v in ((a, b), (b, c), (c, a)))
     return -2.0 * np.arctan2(volume, 1.0 + sum(pairs))
 
 

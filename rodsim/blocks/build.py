@@ -11,18 +11,17 @@ Rigid blocks by constraint, not by springs: the fastest rate of a scene does not
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
 from pydantic import AfterValidator
 
+from rodsim.blocks.check import HELD_IN, check
 from rodsim.blocks.ends import ENDS, end_node, held_ends, winds_up
 from rodsim.blocks.words import Body, End, Motion
 from rodsim.case.expressions import Expression
 from rodsim.case.fields import Name, not_empty
-from rodsim.case.words import did_you_mean
 from rodsim.compiled.parts import FORCE, HOLD, PLACE, RELEASE, TRACERS, Part
 from rodsim.compiled.row import Entry, Row
 from rodsim.errors import CaseError
@@ -30,44 +29,8 @@ from rodsim.flows.fluid import pair_sums
 from rodsim.forces.places import rod_named
 from rodsim.registry import Kind
 
-HELD_IN = "space"
 AT = np.zeros(1)  # what is driven here does not depend on s
 LOOKED_AT = np.linspace(0.0, 1.0, 12)  # of the run: when it is checked
-
-
-def _check(case, rod_names) -> Iterator[tuple]:
-    bodies = case.bodies or {}
-    for name in bodies:
-        if name == HELD_IN:
-            yield ("bodies", name), "is the word for what is no body: choose another name"
-        if case.plane is not None:
-            yield ("bodies", name), "a planar scene has no bodies: drop plane"
-    for name, rod in (case.rods or {}).items():
-        for which in ENDS:
-            if (end := getattr(rod, which)) is not None:
-                for path, reason in _end_problems(case, rod, end, bodies):
-                    yield ("rods", name, which, *path), reason
-
-
-def _end_problems(case, rod, end, bodies):
-    if rod.shape.is_closed:
-        yield (), "a closed rod has no ends"
-    if end.to != HELD_IN and end.to not in bodies:
-        known = f": the bodies are {', '.join(bodies)}" if bodies else ": there are no bodies"
-        yield ("to",), f"no such body{did_you_mean(end.to, bodies) or known}"
-    if case.plane is not None:
-        yield from _out_of_plane(case, end)
-
-
-def _out_of_plane(case, end):
-    if end.move is not None:
-        for key, zero in (("displace", (0,)), ("turn", (1, 2))):
-            for i in zero:
-                if getattr(end.move, key)[i] != 0.0:
-                    reason = f"must be the number 0 where plane is {case.plane}"
-                    yield ("move", key, i), reason
-    if end.motor is not None:
-        yield ("motor",), f"turns rods out of the plane: drop plane: {case.plane}"
 
 
 class _Rows:
@@ -253,7 +216,7 @@ KIND = Kind(
     where="Case",
     words=Annotated[dict[Name, Body], AfterValidator(not_empty)],
     about="rigid bodies, by name; rods can be attached to them",
-    check=_check,
+    check=check,
 )
 START, END = (
     Kind(build=lambda case, scene: [], word=which, where="Rod", words=End, about=about)

@@ -106,7 +106,8 @@ def set_frames(row, fixed, position, director):
         given[:] = 0.0
         if motion >= 0:
             theta = row[motion + 6 : motion + 9]
-            given[:3] = row[motion + 3 : motion + 6]
+            for c in range(3):
+                given[c] = row[motion + 3 + c]
             spin_of(theta, row[motion + 9 : motion + 12], given[3:])
         if node >= 0:
             for i in range(3):
@@ -114,10 +115,12 @@ def set_frames(row, fixed, position, director):
                 for j in range(3):
                     left[f.TURN + 3 * i + j] = director[j, i, node]
             continue
-        left[f.PLACE : f.PLACE + 3] = block[f.ORIGIN : f.ORIGIN + 3]
+        for c in range(3):
+            left[f.PLACE + c] = block[f.ORIGIN + c]
         R = left[f.TURN : f.TURN + 9]
         if motion >= 0:
-            left[f.PLACE : f.PLACE + 3] += row[motion : motion + 3]
+            for c in range(3):
+                left[f.PLACE + c] += row[motion + c]
             exponential(theta, R)
         else:
             R[:] = 0.0
@@ -142,8 +145,10 @@ def _turn_about_axis(member, R, director, node, out):
     turned_back(R, seen, image)
     x = image[0] * across[0] + image[1] * across[1] + image[2] * across[2]
     y = image[0] * around[0] + image[1] * around[1] + image[2] * around[2]
-    angle, own = math.atan2(y, x), np.empty(9)
-    exponential(angle * axis, own)
+    angle, theta, own = math.atan2(y, x), np.empty(3), np.empty(9)
+    for c in range(3):
+        theta[c] = angle * axis[c]
+    exponential(theta, own)
     for i in range(3):
         for j in range(3):
             out[3 * i + j] = 0.0
@@ -169,11 +174,13 @@ def place_members(row, fixed, rods, state, loads, velocities):
             if rotor >= 0:
                 position[c, rotor] = position[c, node]
         if joint == f.CLAMPED:
-            frame[:] = R
+            for i in range(9):
+                frame[i] = R[i]
         elif joint == f.TURNING:
             _turn_about_axis(member, R, director, node, frame)
         else:
             continue
         for i in range(3):
             turned(frame, member[f.TRIAD + 3 * i : f.TRIAD + 3 * i + 3], arm)
-            director[i, :, node] = arm
+            for c in range(3):
+                director[i, c, node] = arm[c]

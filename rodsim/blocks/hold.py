@@ -45,14 +45,16 @@ def release(row, fixed, rods, state, loads, velocities):
         node, left = int(block_of(fixed, b)[f.NODE]), left_of_block(fixed, b)
         left[f.OUTSIDE : f.OUTSIDE + 6] = 0.0
         if node >= 0:
-            left[f.OUTSIDE : f.OUTSIDE + 6] = loads[:, node]
-            loads[:, node] = 0.0
+            for c in range(6):
+                left[f.OUTSIDE + c] = loads[c, node]
+                loads[c, node] = 0.0
     for q in range(int(fixed[f.MEMBERS])):
         member, left = member_of(fixed, q), left_of_member(fixed, q)
         node = int(member[f.M_NODE])
         set_spring(member, left, left_of_block(fixed, int(member[f.M_BLOCK])), state[1])
-        left[f.LOAD : f.LOAD + 6] = loads[:, node]
-        loads[:, node] = 0.0
+        for c in range(6):
+            left[f.LOAD + c] = loads[c, node]
+            loads[c, node] = 0.0
     _set_Q(row, fixed, state[0])
 
 
@@ -88,7 +90,9 @@ def _member_loads(fixed):
     """Return the loads (6, m) that the members have from their rods."""
     loads = np.empty((6, int(fixed[f.MEMBERS])))
     for q in range(loads.shape[1]):
-        loads[:, q] = left_of_member(fixed, q)[f.LOAD : f.LOAD + 6]
+        left = left_of_member(fixed, q)
+        for c in range(6):
+            loads[c, q] = left[f.LOAD + c]
     return loads
 
 
@@ -144,7 +148,9 @@ def _given_velocities(row, fixed, position, loads, out, w, carried):
     """Write v - k at all points of blocks, and the background flow at surfaces, in their frames."""
     members = np.empty((6, int(fixed[f.MEMBERS])))
     for q in range(members.shape[1]):
-        members[:, q] = out[:, int(member_of(fixed, q)[f.M_NODE])]
+        node = int(member_of(fixed, q)[f.M_NODE])
+        for c in range(6):
+            members[c, q] = out[c, node]
     none, begin = np.zeros_like(members), int(fixed[f.FLOW])
     carried[:] = 0.0
     for b in range(int(fixed[f.BLOCKS])):
@@ -204,7 +210,8 @@ def _set_motions(row, fixed, position, held, loads, out, gauges):
     for b in range(int(fixed[f.BLOCKS])):
         block, left = block_of(fixed, b), left_of_block(fixed, b)
         R, rates = left[f.TURN : f.TURN + 9], columns_of(V, block)
-        U[:], spin[:] = left[f.GIVEN : f.GIVEN + 3], left[f.GIVEN + 3 : f.GIVEN + 6]
+        for c in range(3):
+            U[c], spin[c] = left[f.GIVEN + c], left[f.GIVEN + 3 + c]
         if block[f.FREE] != 0.0:
             turned(R, rates[:3], U)
             turned(R, rates[3:6], spin)
@@ -255,7 +262,8 @@ def _set_body(fixed, b, position, held, passed, U, spin, loads, out, total):
     for c in range(3):
         total[c] += force[c] - moment[c] - left[f.OUTSIDE + c]
         total[3 + c] += torque[c] - moment[3 + c] - left[f.OUTSIDE + 3 + c]
-    left[f.HOLDER : f.HOLDER + 6] = total
+    for c in range(6):
+        left[f.HOLDER + c] = total[c]
     node = int(block[f.NODE])
     if node >= 0:
         for c in range(3):
@@ -311,7 +319,8 @@ def _set_stresslets(row, fixed, L, carried, loads, gauges):
     for b in range(int(fixed[f.BLOCKS])):
         node, left = int(block_of(fixed, b)[f.NODE]), left_of_block(fixed, b)
         if node >= 0:
-            place[:, 0] = left[f.PLACE : f.PLACE + 3]
+            for c in range(3):
+                place[c, 0] = left[f.PLACE + c]
             far[:] = 0.0
             carry(fixed[begin : int(fixed[f.FLOW_END])], row[0], place, far)
             for c in range(6):

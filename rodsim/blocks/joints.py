@@ -59,7 +59,8 @@ def _bend_and_twist(member, block_left, director, axis, torque):
     turn, reference = np.zeros((3, 3)), np.empty(3)
     for i in range(3):
         if rotor >= 0:
-            reference[:] = director[i, :, rotor]
+            for c in range(3):
+                reference[c] = director[i, c, rotor]
         else:
             begin = f.TRIAD + 3 * i
             turned(block_left[f.TURN : f.TURN + 9], member[begin : begin + 3], reference)

@@ -17,7 +17,8 @@ def subtract_motions(fixed, b, y, x):
     n, begin, spin, u = int(block[f.POINTS]), int(block[f.SURFACE]), np.zeros(3), np.empty(3)
     if block[f.FREE] != 0.0:
         own = fixed[begin : begin + 3 * n].reshape(3, n)
-        spin[:] = y[3:6]
+        for c in range(3):
+            spin[c] = y[3 + c]
         for i in range(n):
             cross(spin, own[:, i], u)
             for c in range(3):

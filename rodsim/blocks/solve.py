@@ -129,14 +129,16 @@ def spread_loads(fixed, x, loads):
         block, R = block_of(fixed, b), left_of_block(fixed, b)[f.TURN : f.TURN + 9]
         mine, n, skin = part_of(x, block), int(block[f.POINTS]), surface_loads(fixed, block)
         for i in range(n):
-            own[:] = mine[3 * i : 3 * i + 3]
+            for c in range(3):
+                own[c] = mine[3 * i + c]
             turned(R, own, out)
             for c in range(3):
                 skin[c, i] = out[c]
         for q in range(int(block[f.COUNT])):
             for half in range(0, 6, 3):
                 begin = 3 * n + 6 * q + half
-                own[:] = mine[begin : begin + 3]
+                for c in range(3):
+                    own[c] = mine[begin + c]
                 turned(R, own, out)
                 for c in range(3):
                     loads[half + c, int(block[f.FIRST]) + q] = out[c]
@@ -152,14 +154,16 @@ def gather(fixed, b, surface, members, x):
         for c in range(3):
             own[c] = surface[c, i]
         turned_back(R, own, out)
-        mine[3 * i : 3 * i + 3] = out
+        for c in range(3):
+            mine[3 * i + c] = out[c]
     for q in range(int(block[f.COUNT])):
         for half in range(0, 6, 3):
             for c in range(3):
                 own[c] = members[half + c, int(block[f.FIRST]) + q]
             turned_back(R, own, out)
             begin = 3 * n + 6 * q + half
-            mine[begin : begin + 3] = out
+            for c in range(3):
+                mine[begin + c] = out[c]
 
 
 @unsigned
@@ -325,7 +329,8 @@ def _conjugate_gradients(fixed, position, w, L):
     _add_line_rates(fixed, rates, residual)
     _take_off_motions(fixed, residual)
     apply_P(fixed, residual, z)
-    p[:] = z
+    for i in range(L.size):
+        p[i] = z[i]
     rz = dot(residual, z)
     first = rz
     for _ in range(MOST):

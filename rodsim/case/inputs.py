@@ -1,4 +1,4 @@
-"""Which files a case is made from, beside itself: shapes and tables of its rods."""
+"""Which files a case is made from, beside itself: shapes and tables of its rods, an earlier run."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ def input_entries(data: dict[str, Any]) -> Iterator[tuple[str, dict, str]]:
     """
     for name, rod in data["rods"].items():
         yield from _inside(rod, f"rods.{name}")
+    if "initial" in data:
+        yield "initial.path", data["initial"], "path"
 
 
 def _inside(node, path):

@@ -28,6 +28,7 @@ from rodsim.case.fields import (
     quantity,
 )
 from rodsim.case.fluid import Fluid, Spacings
+from rodsim.case.initial import Initial
 from rodsim.case.resolved import is_driven, resolved
 from rodsim.case.rest import Rest
 from rodsim.case.rod import Moduli, Rod
@@ -99,6 +100,9 @@ class Case(Model):
     )
     time: Time = Field(description="time and integrator")
     output: Output = Field(Output(), description="frames")
+    initial: Initial | None = Field(
+        None, description="begin in a state of an earlier run: places of rods and bodies"
+    )
     rest: Rest | None = Field(None, description="how `rodsim rest` looks for a state at rest")
 
     _source: Source = PrivateAttr(default_factory=Source)
@@ -138,11 +142,12 @@ class Case(Model):
 
     @property
     def files(self) -> list[str]:
-        """The files it is read from: the case file and those of shapes."""
+        """The files it is read from: the case file, those of shapes, and of an earlier run."""
         if not (self.source and self.source.path):
             return []
         folder = os.path.dirname(self.source.path)
         found = [path for rod in self.rods.values() for path in rod.files]
+        found += [self.initial.path] if self.initial else []
         return [self.source.path, *(os.path.join(folder, path) for path in found)]
 
     @property

@@ -19,7 +19,7 @@ from_option = click.option(
     "origin",
     type=click.Path(path_type=Path, dir_okay=False),
     metavar="OUT.h5",
-    help="Start from the shapes of the rods in the last frame of an output.",
+    help="Start in the last state in an output: places of rods and bodies.",
 )
 case_argument = click.argument("case_path", metavar="CASE.yaml", type=click.Path(path_type=Path))
 output_argument = click.argument("output", metavar="OUT.h5", type=click.Path(path_type=Path))
@@ -67,13 +67,10 @@ def load(path, overrides):
 
 
 def load_from(path, overrides, origin, frame=-1):
-    """Return the validated case in a file, its rods shaped as in a frame of an output, if any."""
-    case = load(path, overrides)
-    if origin is None:
-        return case
-    from rodsim.case.starts import shapes_of
+    """Return the validated case in a file, to begin in a frame of an output, if one is named."""
+    from rodsim.case.starts import start_in
 
-    return load(path, [*overrides, *shapes_of(case, origin, frame)])
+    return load(path, overrides if origin is None else [*overrides, start_in(origin, frame)])
 
 
 def say(text, err=True) -> None:

@@ -9,18 +9,8 @@ import numpy as np
 
 from rodsim.case.expressions import Expression
 from rodsim.case.materials import WIDTHS
-from rodsim.units import in_si
 
 SEGMENTS, TIMES = 200, 400  # at which a drive is looked at
-VISCOSITY = (1, -1, -1)
-
-
-def in_water_units(viscosity: float, units: dict) -> str:
-    """Return `` (1 mPa s)`` for a viscosity in a case's units, nothing where they are not known."""
-    try:
-        return f" ({1e3 * viscosity * in_si(VISCOSITY, units):.4g} mPa s)"
-    except KeyError:
-        return ""
 
 
 def describe_rods(case, scene) -> list[str]:

@@ -13,13 +13,15 @@ from rodsim.commands.common import is_output, load, prepare_numba, say, say_warn
 @click.option("--check", is_flag=True, help="Read the whole output and say if all of it is good.")
 def info(path, overrides, check):
     """Describe a case (points, fastest rate, stable steps, what a run costs) or an output file."""
+    if is_output(path):
+        from rodsim.commands import stored_run
+
+        say(stored_run.describe_output(path), err=False)
+        if check:
+            say(stored_run.check_output(path), err=False)
+        return
     from rodsim.commands import reports
 
-    if is_output(path):
-        say(reports.describe_output(path), err=False)
-        if check:
-            say(reports.check_output(path), err=False)
-        return
     case = load(path, overrides)
     say_warnings(case)
     prepare_numba()

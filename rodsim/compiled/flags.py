@@ -36,6 +36,8 @@ RODS = f"Tuple(({INTS}, {INTS}, {BOOLS}, {VEC}, {MAT}))"  # nodes.Rods.tables
 STATE = f"Tuple(({MAT}, {TRIADS}, {MAT}))"  # position, director, tracer
 PART = f"void({VEC}, {VEC}, {RODS}, {STATE}, {MAT}, UniTuple({MAT}, 2))"  # compiled.kernels
 SUM = f"void({MAT}, {MAT}, {MAT}, float64, float64, float64, {MAT})"  # compiled.kernels
+WORK = f"Tuple(({STATE}, {MAT}, {TRIADS}))"  # a state, loads, loads or velocities of each account
+EVALUATION = f"void({INT_MAT}, {VEC}, {VEC}, {RODS}, {STATE}, {WORK}, {VEC}, {VEC})"  # scene.loop
 ONE = np.uint64(1)
 
 # What Numba may run in parallel; all but prange costs seconds of compiling and saves nothing.
@@ -85,5 +87,13 @@ def _sum_at(typing, address, targets, sources, loads, epsilon, viscosity, wall, 
     return types.void(types.int64, *arguments), _jump
 
 
+@intrinsic
+def _evaluation_at(typing, address, table, numbers, driven, rods, base, work, y, out):
+    """Call the evaluation whose machine code lies at an address."""
+    arguments = (table, numbers, driven, rods, base, work, y, out)
+    return types.void(types.int64, *arguments), _jump
+
+
+call_evaluation = interpreted if jit_is_off() else _evaluation_at
 call_sum = interpreted if jit_is_off() else _sum_at
 call_part = interpreted if jit_is_off() else _call_at

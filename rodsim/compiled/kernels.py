@@ -17,7 +17,8 @@ A *sum* is a function of another signature, the velocities at targets by point l
 
     sum(targets, sources, loads, epsilon, viscosity, wall, out)
 
-Parts that need sums call them by address too, so that they are compiled once for every fluid.
+Parts that need sums call them by address too, so that they are compiled once for every fluid; and
+all that needs velocities at increments calls the one *evaluation* of :mod:`rodsim.scene.loop`.
 
 The loop is compiled once for all scenes, and a part once for all: a scene compiles or loads just
 the parts that it lists. Importing this does not import Numba, so that the words of a part in the
@@ -71,6 +72,7 @@ class Kernel:
 
 part = Kernel  # as a decorator
 pair_sum = partial(Kernel, signature="SUM")
+evaluation = partial(Kernel, signature="EVALUATION")
 
 
 def address_of(kernel: Kernel | str) -> int:

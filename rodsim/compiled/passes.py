@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 
-from rodsim.compiled.flags import INTS, VEC, kernel, unsigned
+from rodsim.compiled.flags import unsigned
 from rodsim.compiled.rotations import rotation_vector_rate
 
 
-@kernel(f"void(float64, {VEC}, float64, {VEC}, {VEC})")
+@unsigned
 def weighted_sum(a, x, b, y, out):
     """out = a x + b y."""
     for i in range(np.uint64(out.size)):
@@ -41,12 +41,9 @@ def _largest_rms(values, weights, first, count):
     return largest
 
 
-@kernel(
-    f"float64(float64, float64, float64, {VEC}, {VEC}, {VEC}, {VEC}, {VEC}, {INTS}, {INTS}, "
-    f"{VEC}, {VEC}, {VEC})"
-)
+@unsigned
 def remaining(size, c, memory, y, velocities, f0, g, weights, first, count, f1, third, error):
-    """Return how large the error is that a trial step leaves, see ``Defect.remaining``.
+    """Return how large the error is that a trial step leaves, see ``Defect.correction``.
 
     Writes the rates at its end, y''' and the error of each number.
     """
@@ -64,14 +61,14 @@ def remaining(size, c, memory, y, velocities, f0, g, weights, first, count, f1, 
     return _largest_rms(error, weights, first, count)
 
 
-@kernel(f"void(float64, {VEC}, {VEC}, {VEC})")
+@unsigned
 def probe(size, direction, weights, y):
     """y = size direction/weights, in the first ``weights.size`` numbers."""
     for i in range(np.uint64(weights.size)):
         y[i] = size * direction[i] / weights[i]
 
 
-@kernel(f"void(float64, {VEC}, {VEC}, {VEC}, {VEC})")
+@unsigned
 def image(size, shifted, rate, weights, out):
     """out = weights (shifted - rate)/size, in the first ``weights.size`` numbers."""
     for i in range(np.uint64(weights.size)):

@@ -10,6 +10,7 @@ from rodsim.compiled.settings import LAYERS, load_tbb
 from rodsim.errors import UsageError
 
 PAIR_SECONDS = 2e-9  # one pair of the sums on one core
+PLANAR, WITHOUT_W, AT_WALL = 0.5, 0.55, 2.0  # a pair of other sums, in such pairs: measured too
 # What each of several threads adds to a sum: waking one that sleeps in GNU OpenMP or in Numba's
 # work queue costs far more than in tbb. Measured, docs/notes/performance.md.
 LAUNCH_SECONDS = {"tbb": 2.5e-6, "omp": 8e-5, "workqueue": 8e-5}
@@ -95,6 +96,15 @@ def _choose(pairs, asked):
     if asked is not None:
         return min(asked, most)
     return threads_worth(PAIR_SECONDS * pairs, _layer(), most)
+
+
+def pairs_worth(points: int, tracers: int, planar: bool, at_wall: bool) -> float:
+    """Return how many pairs of the sums in space take the time of a scene's sums.
+
+    Tracers need no w, a pair in a plane is half the work, a wall has an image of each source.
+    """
+    targets = points * (PLANAR if planar else 1.0) + tracers * WITHOUT_W
+    return points * targets * (AT_WALL if at_wall else 1.0)
 
 
 def threads_worth(serial: float, layer: str, most: int) -> int:

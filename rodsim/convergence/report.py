@@ -67,6 +67,10 @@ def _section(study, section):
         yield f"no bound: rounding is amplified, starts a last bit apart end {apart} apart"
     yield f"largest and rms distance in {unit}, {_clock(study)}; energy over the larger of its"
     yield "first and last value, speed over itself; ~: no larger than what the reference may err"
+    parts = [r.row.part for r in section.results if r.outcome and r.row.part < 1.0]
+    if parts:
+        yield f"*: only the first {parts[0]:.0%} was run (--whole: all): cost in proportion, and as"
+        yield "   much of the error of euler's longest step, which was run to the end, as there"
     names = ["method", "value", "largest", "of length", "rms", "angle/deg", "energy"]
     names += (
         ["speed"] * moving + ["tracers"] * carries + ["solve/s", "evaluations", "pairs x evals"]
@@ -103,7 +107,7 @@ def _cells(section, result, swims, carries):
     if e is None:
         return [*head, "reference", *[""] * (4 + swims + carries), *cost]
     near = section.own is not None and e.position < NEAR * section.floor
-    largest = ("~" if near else "") + f"{e.position:.2e}"
+    largest = "*" * (result.row.part < 1.0) + "~" * near + f"{e.position:.2e}"
     more = [f"{x:.2e}" for x, there in ((e.speed, swims), (e.tracers, carries)) if there]
     sizes = [f"{x:.2e}" for x in (e.relative, e.rms, e.angle, e.energy)]
     return [*head, largest, *sizes, *more, *cost]
@@ -117,8 +121,8 @@ def _choice(study, section):
     methods = sorted({r.row.method for r in done}, key=METHODS.index)
     if not done:
         return
-    best = min(r.errors.position for r in done)
-    worst = max(r.errors.position for r in done)
+    errors = [max(r.errors.position, section.floor) for r in done]  # what can be told of them
+    best, worst = min(errors), max(errors)
     yield "fastest run of each method within"
     for decade in range(int(np.ceil(np.log10(worst))), int(np.floor(np.log10(best))), -1):
         fastest = {}
@@ -149,7 +153,7 @@ class CsvRows:
                "position_error", "relative_error", "rms_error", "triad_angle_degrees",
                "energy_error", "speed_error", "seconds", "seconds_high", "repeats",
                "steps", "rejected", "evaluations", "pairs",
-               "reference_error", "rounding_error", "tracer_error")  # fmt: skip
+               "reference_error", "rounding_error", "tracer_error", "part")  # fmt: skip
 
     def __init__(self, path):
         self.path = path
@@ -166,8 +170,9 @@ class CsvRows:
             cost = [*spread, len(run.seconds), run.steps, run.rejected, run.evaluations, run.pairs]
         row = result.row
         self._write(
-            [row.axis, row.method, row.value, result.status, *errors, *cost, *known, tracers], "a"
-        )
+            [row.axis, row.method, row.value, result.status, *errors, *cost, *known, tracers,
+             row.part], "a"
+        )  # fmt: skip
 
     def _write(self, cells, mode):
         try:

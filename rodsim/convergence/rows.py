@@ -15,6 +15,8 @@ TOLERANCES = tuple(10.0 ** (k / 2) for k in range(4, -5, -1))  # times the case'
 REFERENCE, CHECK = 1e-4, 1e-3  # of the case's tolerance
 TIGHTEST = 1e-12
 SPACE_TOLERANCE = 1e-6  # in a study of space no error in time is to be seen
+PARTS = 20  # of a run: many steps lead to the end of the first of them, too (``stretch``)
+MANY = 50 * PARTS  # steps: there it makes a step smaller by at most 2 per cent
 STABLE = 0.9  # of the limit of stability: the longest step of a fixed-step method
 ROWS = {"euler": 2, "rk4": 1}  # the longest step and its half; RK4 has no error to be seen there
 BODY_LEVELS = (0.5, 1.0, 2.0, 4.0)  # of the case's own points of bodies
@@ -25,7 +27,8 @@ SENSITIVITY = (0.5, 2**-0.5, 2**0.5, 2.0)  # epsilon over the case's own
 class Row:
     """One run: which axis and method it belongs to, the value there, the keys that make it so.
 
-    ``evaluations``: a guess of what it costs, for the progress bar .
+    ``evaluations``: a guess of what it costs, for the progress bar. ``part``: of the run that is
+    made (``stretch``).
     """
 
     axis: str
@@ -33,6 +36,7 @@ class Row:
     value: float
     overrides: tuple[str, ...]
     evaluations: float
+    part: float = 1.0
 
 
 def quiet(case) -> tuple[str, ...]:
@@ -68,6 +72,8 @@ def step_rows(case, limits) -> list[Row]:
     rows = []
     for name, method in sorted(FIXED_STEP.items()):
         count = _steps(case.time.end, STABLE * limits.largest_steps[name])
+        if count > MANY:
+            count += -count % PARTS
         for halving in range(ROWS[name]):
             step = case.time.end / (count * 2**halving)
             overrides = (
@@ -135,6 +141,12 @@ def body_points(case) -> dict[str, int]:
     """Return the number of points of each body; those from a file have none of their own."""
     shapes = {name: body.shape for name, body in (case.bodies or {}).items()}
     return {name: shape.points for name, shape in shapes.items() if shape.kind != "file"}
+
+
+def twin_row(case, rate) -> Row:
+    """The case itself, as studies of space run it: made again from a start a last bit apart."""
+    cost = guess(case, rate, SPACE_TOLERANCE)
+    return Row("twin", "rkc", SPACE_TOLERANCE, rkc(SPACE_TOLERANCE), cost)
 
 
 def body_rows(case, rate) -> list[Row]:

@@ -7,8 +7,10 @@ from dataclasses import dataclass, field
 
 from rodsim.convergence import rows
 from rodsim.convergence.outcome import Errors, Outcome, compare
+from rodsim.convergence.plan import plan
 from rodsim.convergence.rows import Row
 from rodsim.convergence.side_by_side import REFUSED, Runs
+from rodsim.convergence.stretch import grown, to_the_end
 from rodsim.errors import CaseError, FileError, UsageError
 from rodsim.integrators.limits import stability
 from rodsim.scene.build import build_scene
@@ -62,11 +64,11 @@ class Study:
     """Error against run time of a case.
 
     ``load(overrides)`` returns the case with more keys changed; ``axes`` are some of
-    ``rows.AXES``.
+    ``rows.AXES``; ``whole``: rows of a fixed step are run to their end, however long that takes.
     """
 
-    def __init__(self, load: Callable, axes, threads=None, progress=None):
-        self.load, self.threads, self.case = load, threads, load(())
+    def __init__(self, load: Callable, axes, threads=None, progress=None, whole=False):
+        self.load, self.threads, self.case, self.whole = load, threads, load(()), whole
         self.scene, self._inputs = build_scene(self.case), case_digests(self.case)
         self.limits = stability(RodSystem(self.scene))
         self.axes = [axis for axis in rows.AXES if axis in axes]
@@ -79,14 +81,14 @@ class Study:
         Raises UsageError where a reference cannot be had, or for an axis that the scene does not
         have.
         """
-        plan = self._plan()
-        for row in [row for _, part in plan for row in part]:
+        parts = plan(self.case, self.scene, self.limits, self.axes, self.whole)
+        for row in [row for part in parts for row in part.all_rows]:
             self._ask(row)
-        for row in [row for _, part in plan for row in part[1:] if self._is_twin(row)]:
+        for row in {part.twin for part in parts if part.twin}:
             self._ask(row, nudged=True)
         with self._runs:
-            for section, part in plan:
-                yield from self._section(section, part)
+            for part in parts:
+                yield from self._section(part)
 
     @property
     def side_by_side(self) -> int:
@@ -102,118 +104,55 @@ class Study:
             self._cases[row] = f"{REFUSED}: {error.problems[0].reason}"
             return
         self._cases[row] = case
-        repeats = 1 if nudged or row.axis == "time" else REPEATS
+        repeats = 1 if nudged or row.axis in ("time", "twin") else REPEATS
         label = f"{row.method} {row.axis} {row.value:g}"
         self._runs.ask(label, case, self._weight(row), nudged, repeats)
 
-    def _plan(self):
-        """Return (section, rows) in order; the first row of each is its reference.
-
-        Tolerances and steps share one reference; the second row tells how good that is.
-        """
-        case, rate = self.case, self.limits.rate
-        plan = []
-        timed = [axis for axis in self.axes if axis in ("tolerance", "step")]
-        if timed:
-            tight, check = (
-                max(rows.TIGHTEST, case.time.tolerance * factor)
-                for factor in (rows.REFERENCE, rows.CHECK)
-            )
-            pair = [
-                Row("time", "rkc", value, rows.rkc(value), rows.guess(case, rate, value))
-                for value in (tight, check)
-            ]
-            makers = {
-                "tolerance": lambda: rows.tolerance_rows(case, rate),
-                "step": lambda: rows.step_rows(case, self.limits),
-            }
-            found = [row for axis in timed for row in makers[axis]()]
-            words = f"rkc at tolerance {tight:g}, held against tolerance {check:g}"
-            plan.append((Section("time", words), [*pair, *found]))
-        if "points" in self.axes:
-            self._need_formulas()
-            found = rows.points_rows(case, rate, self.scene.epsilon)
-            words = f"{found[-1].value:.0f} points; its error by order 2 from {found[-2].value:.0f}"
-            plan.append((Section("points", words), found[::-1]))
-        if "body_points" in self.axes:
-            self._need_bodies()
-            found = rows.body_rows(case, rate)
-            words = f"{found[-1].value} points of bodies, held against {found[-2].value}"
-            plan.append((Section("body_points", words), found[::-1]))
-        if "epsilon" in self.axes:
-            own = Row("epsilon", "rkc", self.scene.epsilon, rows.rkc(rows.SPACE_TOLERANCE),
-                      rows.guess(case, rate, rows.SPACE_TOLERANCE))  # fmt: skip
-            words = f"the case's own epsilon, {self.scene.epsilon:.6g}"
-            found = rows.epsilon_rows(case, rate, self.scene.epsilon)
-            plan.append((Section("epsilon", words), [own, *found]))
-        if "accuracy" in self.axes:
-            words = "exact sums, with the same steps"
-            plan.append((Section("accuracy", words), rows.accuracy_rows(case, rate)))
-        return plan
-
-    def _need_formulas(self):
-        for name, rod in self.case.rods.items():
-            if rod.shape.segments is None:
-                raise UsageError(
-                    f"points: rod '{name}' comes from a file, which gives its points once and for "
-                    "all: leave 'points' out of --in"
-                )
-
-    def _need_bodies(self):
-        bodies, formed = self.case.bodies or {}, rows.body_points(self.case)
-        if not formed or len(formed) < len(bodies) or len(rows.body_rows(self.case, 1.0)) < 2:
-            why = "a body comes from a file, which gives its points once and for all"
-            if not bodies:
-                why = "there are no bodies"
-            elif len(formed) == len(bodies):
-                why = "the bodies have as many points as there can be, or as few"
-            raise UsageError(f"body_points: {why}: leave 'body_points' out of --in")
-
-    def _section(self, section, part):
-        first, *others = part
+    def _section(self, part):
+        """Yield the rows of a part, each held against its reference."""
+        first, *others = part.rows
         reference = self._outcome(first)
         if not isinstance(reference, Outcome):
-            raise UsageError(f"{section.axis}: the reference ({section.reference}) is {reference}")
+            raise UsageError(f"{part.axis}: the reference ({part.words}) is {reference}")
+        section = Section(part.axis, part.words)
         self.sections.append(section)
-        if section.axis in ("points", "body_points", "accuracy"):
+        # How good it is: beside the next best run, and what rounding does.
+        if part.check:
+            found = self._outcome(part.check)
+            if isinstance(found, Outcome):
+                section.own = _own(part.axis, compare(found, reference))
+        if part.twin:
+            section.rounding = self._rounding(part.twin)
+        if part.axis in ("points", "body_points", "accuracy"):
             others = [*others, first]
         for row in others:
-            result = self._result(row, first, reference)
-            if (
-                section.own is None
-                and section.axis in ("time", "points", "body_points")
-                and result.errors
-            ):
-                section.own = _own(section, result.errors)
-            if result.outcome and row is not first and self._is_twin(row):
-                section.rounding = self._rounding(row, result.outcome)
-            if row.axis == "time":
-                continue
+            result = self._result(part, row, reference)
             section.results.append(result)
             yield section, result
 
-    def _is_twin(self, row):
-        """Tell the runs that are made again from a start that differs in the last bit.
+    def _rounding(self, row):
+        pair = [self._outcome(row), self._outcome(row, nudged=True)]
+        return compare(*pair) if all(isinstance(run, Outcome) for run in pair) else None
 
-        They are the check of the reference in time, and the case's own numbers of points.
-        """
-        if row.axis == "points":
-            return row.value == self.scene.rods.points
-        if row.axis == "body_points":
-            return row.value == sum(rows.body_points(self.case).values())
-        return row.axis == "time"
+    def _result(self, part, row, reference):
+        found = self._outcome(row)
+        if not isinstance(found, Outcome):
+            return Result(row, status=found)
+        if row is part.rows[0]:
+            return Result(row, found)
+        if row.part < 1.0:
+            return self._stretch(part.stretch, row, found, reference)
+        return Result(row, found, compare(found, reference))
 
-    def _rounding(self, row, outcome):
-        twin = self._outcome(row, nudged=True)
-        return compare(twin, outcome) if isinstance(twin, Outcome) else None
-
-    def _result(self, row, first, reference):
-        if row is first:
-            return Result(row, reference)
-        outcome = self._outcome(row)
-        if not isinstance(outcome, Outcome):
-            return Result(row, status=outcome)
-        return Result(row, outcome, compare(outcome, reference))
+    def _stretch(self, stretch, row, run, reference):
+        """Return what a row that is run over a stretch comes to at the end."""
+        held = (stretch.reference, stretch.guide, stretch.guide_part)
+        exact, guide, guide_part = (self._outcome(other) for other in held)
+        for found in (exact, guide, guide_part):
+            if not isinstance(found, Outcome):
+                return Result(row, status=f"run to {row.part:.0%}, euler is {found}")
+        at_end, then = compare(guide, reference), compare(guide_part, exact)
+        return Result(row, to_the_end(run, row, guide), grown(compare(run, exact), then, at_end))
 
     def _outcome(self, row, nudged=False):
         """Return the outcome of a row, or in words why there is none."""
@@ -236,12 +175,12 @@ class Study:
         return row.evaluations * (points**2 + BESIDE)
 
 
-def _own(section, errors):
+def _own(axis, errors):
     """Return the error of a reference from that of the next best run.
 
     In time and of bodies: the whole difference, an upper bound. Along rods: a third of it, for
     order 2.
     """
-    if section.axis != "points":
+    if axis != "points":
         return errors
     return Errors(*(None if value is None else value / 3.0 for value in vars(errors).values()))

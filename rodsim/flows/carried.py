@@ -19,7 +19,8 @@ def carry(fixed, t, points, out):
         count = min(BLOCK, points.shape[1] - begin)
         work = np.empty((table.shape[0], count))
         for c in range(3):
-            work[c] = points[c, begin : begin + count]
+            for i in range(count):
+                work[c, i] = points[c, begin + i]
         work[len(VARIABLES) - 1] = t
         compute(table, work)
         for row in range(out.shape[0]):

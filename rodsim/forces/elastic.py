@@ -7,6 +7,7 @@ from rodsim.compiled.row import Entry, Row
 from rodsim.registry import Kind
 
 ENERGIES = ("bending_energy", "twisting_energy", "shear_energy", "stretch_energy")
+MANY = 20_000  # points from which threads share out the loads
 
 
 def strain_twist(entries, rods) -> Row:
@@ -29,7 +30,8 @@ def elastic_part(scene) -> Part:
     """Return the part of the rods of a scene."""
     along = scene.along
     kernel, fixed = ("elastic", np.zeros(0)) if along is None else ("varying", along.ravel())
-    home = f"rodsim.forces.elasticity:{kernel}_loads"
+    shared = "shared_" if scene.rods.points >= MANY else ""
+    home = f"rodsim.forces.{shared}elasticity:{kernel}_loads"
     exact = Statics(exact=f"rodsim.forces.exact:exact_{kernel}_loads")
     row, drive = strain_twist(scene.entries, scene.rods), "the strain twist"
     return Part("elastic", FORCE, home, row, fixed, drive, observe=_observe, statics=exact)

@@ -16,53 +16,42 @@ strongly disturbed rod relaxes, and the error control then rejects the step.
 
 import numpy as np
 
-from rodsim.compiled.passes import remaining, weighted_sum
-
 MEMORY = 0.5  # 0: unstable where steps grow by a quarter; 1: more errors of stiff modes, and lag
 TREND = 0.3  # share of the change of y''' that is carried on; 0.5 can be unstable
 
 
 class Defect:
-    """Holds y''' of the last two accepted steps and of the step under trial."""
+    """Holds y''' of the last two accepted steps."""
 
     def __init__(self):
         self._behind = []  # (y''', size), the last step first
-        self._trial = None
 
-    def correction(self, size: float, c: float) -> np.ndarray | None:
-        """Return g for a step of ``size`` and error constant ``c``; None before any step.
+    def correction(self, size: float, c: float, nothing: np.ndarray) -> tuple:
+        """Return (c, m, a, y'''_1, b, y'''_2): what corrects a step, and measures its error again.
+
+        ``size``, ``c`` : of the step, its error constant. g = a y'''_1 + b y'''_2, of the steps
+        behind; before any step ``nothing``, zeros, stands for them.
 
         g = C min(h, h_1)^3/h [y'''_1 + trend (y'''_1 - y'''_2)]: a step that grows is corrected
         as much as the step before it, or what is wrong in y''' would grow by (h/h_1)^3.
+
+        The error that a step leaves of each number is C h^3 y''' - h g, and
+        h^3 y''' = [h (f_0 + f_1)/2 - y + m h g]/(1/12 + m C), m = MEMORY, for the increment y
+        with g in it; without g it is the same with m = 1, g = 0 (``passes.remaining``).
         """
         if not self._behind:
-            return None
+            return c, 1.0, 0.0, nothing, 0.0, nothing
         third, before = self._behind[0]
         factor = c * min(size, before) ** 3 / size
         if len(self._behind) == 1:
-            return factor * third
+            return c, MEMORY, factor, third, 0.0, third
         oldest, earlier = self._behind[1]
         trend = TREND * (before + size) / (before + earlier) * min(1.0, earlier / before) ** 3
-        g = np.empty_like(third)
-        weighted_sum(factor * (1.0 + trend), third, -factor * trend, oldest, g)
-        return g
+        return c, MEMORY, factor * (1.0 + trend), third, -factor * trend, oldest
 
-    def remaining(self, size, c, y, velocities, f0, g, norm) -> tuple[np.ndarray, float]:
-        """Return the rates f_1 at the end of a trial step, and how large the error is that it left.
-
-        The error of each number is C h^3 y''' - h g, and
-        h^3 y''' = [h (f_0 + f_1)/2 - y + m h g]/(1/12 + m C), m = MEMORY, for the increment y
-        with g in it; without g it is the same with m = 1, g = 0. norm : ``RodSystem.norm``.
-        """
-        memory, g = (1.0, np.zeros_like(y)) if g is None else (MEMORY, g)
-        f1, third, error = np.empty((3, y.size))
-        left = remaining(size, c, memory, y, velocities, f0, g, *norm, f1, third, error)
-        self._trial = third, size
-        return f1, left
-
-    def accept(self) -> None:
-        """Keep the step under trial."""
-        self._behind = [self._trial, *self._behind[:1]]
+    def accept(self, third: np.ndarray, size: float) -> None:
+        """Keep y''' of a step that was accepted."""
+        self._behind = [(third, size), *self._behind[:1]]
 
     def memory(self, numbers: int) -> dict:
         """Return the memory of the steps behind, for a checkpoint; no step has size 0."""

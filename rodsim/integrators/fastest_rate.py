@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 
-from rodsim.compiled.passes import image, probe
 from rodsim.scene.state import State
 from rodsim.scene.system import RodSystem
 
@@ -57,14 +56,16 @@ class FastestRate:
             tolerance = self.FIRST_TOLERANCE if first else self.TOLERANCE
         most = max(self.FEWEST + 2, min(self.MOST, self.LARGEST_BASIS // self.system.rod_size))
         space, rho, check = _Krylov(self._start(), most), 0.0, 3 * fewest // 4
+        product = np.empty(self.system.rod_size)
         for made in range(1, self.MOST + 1):
-            space.extend(self._times(state, rate, space.newest))
+            self.system.product(state, rate, space.newest, PERTURBATION, product)
+            space.extend(product)
             last = space.closed or made == self.MOST
             if not (last or space.full or made == check):
                 continue
             check = made + max(1, made // 3)
             before, rho = rho, space.largest()
-            if not (np.isfinite(rho) and rho > 0.0):
+            if not (math.isfinite(rho) and rho > 0.0):
                 self.vector = None
                 return rho
             if last or (made >= fewest and abs(rho - before) <= tolerance * rho):
@@ -73,16 +74,6 @@ class FastestRate:
                 space = _Krylov(space.vector(), most)
         self.vector = space.vector()
         return rho
-
-    def _times(self, state, rate, vector):
-        """Return J v in the scaled norm."""
-        system = self.system
-        weights, product = system.weights[: system.rod_size], np.empty_like(vector)
-        y, shifted = system.zeros(), system.zeros()
-        probe(PERTURBATION, vector, weights, y)
-        system.rate(state.time, state, y, shifted)
-        image(PERTURBATION, shifted, rate, weights, product)
-        return product
 
     def _start(self):
         """Return the kept vector with a part in every mode, always the same: runs must repeat."""
@@ -99,7 +90,7 @@ class _Krylov:
         self.basis = np.empty((most, start.size))
         self.matrix = np.zeros((most, most))
         self.basis[0] = start / np.linalg.norm(start)
-        self.made, self.closed = 0, False
+        self.made, self.closed, self.finite = 0, False, True
 
     @property
     def newest(self):
@@ -112,13 +103,13 @@ class _Krylov:
         return self.made == len(self.basis)
 
     def extend(self, product):
-        """Take J times the newest vector; the space is closed if that leads nowhere new."""
+        """Take J times the newest vector, and change it; closed if that leads nowhere new."""
         self.made += 1
-        if not np.isfinite(product).all():
-            self.matrix[self.made - 1, self.made - 1] = np.nan
-            self.closed = True
+        whole = math.sqrt(product @ product)
+        if not math.isfinite(whole):
+            self.finite, self.closed = False, True
             return
-        whole, rest = math.sqrt(product @ product), self._without_known(product)
+        rest = self._without_known(product)
         if rest < 0.5 * whole:  # once more, for what rounding leaves of much that was taken away
             rest = self._without_known(product)
         self.closed = not rest > 1e-9 * whole
@@ -136,13 +127,13 @@ class _Krylov:
 
     def largest(self):
         """Return the largest of the Ritz values, by size; NaN if the matrix is not finite."""
-        part = self.matrix[: self.made, : self.made]
-        if not np.isfinite(part).all():
-            return np.nan
-        values, vectors = np.linalg.eig(part)
+        if not self.finite:
+            return math.nan
+        values, vectors = np.linalg.eig(self.matrix[: self.made, : self.made])
         sizes = np.abs(values)
-        self._of_largest = vectors[:, sizes.argmax()].real
-        return float(sizes.max())
+        at = sizes.argmax()
+        self._of_largest = vectors[:, at].real
+        return float(sizes[at])
 
     def vector(self):
         """Return the Ritz vector of the value that ``largest`` has just found, its real part."""

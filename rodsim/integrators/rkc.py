@@ -18,7 +18,7 @@ from rodsim.integrators.defect import Defect
 from rodsim.integrators.fastest_rate import FastestRate
 from rodsim.integrators.step import Step
 from rodsim.scene.state import State
-from rodsim.scene.system import RodSystem
+from rodsim.scene.system import RodSystem, Trial
 
 DAMPING = 2.0 / 13.0
 SAFETY = 0.8
@@ -110,7 +110,7 @@ class RKC:
         self._size = None
         self._rate = None  # velocities at the end of the last step
         self._previous = None  # (step size, error) of the last accepted and corrected step
-        self._defect = Defect()
+        self._defect, self._nothing = Defect(), system.zeros()
 
     def steps(self, state: State, end: float):
         """Yield accepted steps of adapted size until ``end`` is reached exactly."""
@@ -121,14 +121,14 @@ class RKC:
                 self._estimate_rate(state, f0)
             if self._size is None:
                 self._size = self._first_size(state, f0, end)
-            size, y, f1, velocities = self._accepted(state, f0, end)
-            self._defect.accept()
+            size, trial = self._accepted(state, f0, end)
+            self._defect.accept(trial.third, size)
             self.accepted += 1
-            self._rate = velocities
+            self._rate = trial.velocities
             time = end if size == end - state.time else state.time + size
-            after = system.state_at(state, time, y)
-            yield Step(system, self.accepted, state, size, y, after, (f0, f1))
-            state, f0 = after, velocities
+            after, rates = system.state_after(state, time, trial), (f0, trial.rates)
+            yield Step(system, self.accepted, state, size, trial.increment, after, rates)
+            state, f0 = after, trial.velocities
 
     def memory(self) -> dict:
         """Return all memory and the counters, for a checkpoint; what is not there yet is NaN."""
@@ -157,37 +157,23 @@ class RKC:
         self._fastest.recall(memory)
         self._defect.recall(memory)
 
-    def attempt(self, state: State, f0: np.ndarray, size: float):
-        """Return (increment, rate at its end, velocities at its end, scaled error) of a trial."""
+    def attempt(self, state: State, f0: np.ndarray, size: float) -> Trial:
+        """Try a step of ``size``. Its error is in ``RodSystem.norm``, not in tolerances."""
         s = stages_for(size, self.fastest_rate)
         self.max_stages = max(self.max_stages, s)
-        table, c = coefficients(s), error_constant(s)
-        g = self._defect.correction(size, c)
-        shift = self.system.zeros() if g is None else g
-        y, velocities = self._run_stages(state, table, size, f0, shift)
-        f1, left = self._defect.remaining(size, c, y, velocities, f0, g, self.system.norm)
-        return y, f1, velocities, left / self.tolerance
-
-    def _run_stages(self, state, table, size, f0, g):
-        """Return the increment of a step, g added to all rates, and the velocities at its end."""
-        system, s = self.system, len(table) - 1
-        Y, f = np.empty((2, system.size)), np.empty(system.size)
-        begin = 2
-        while begin <= s:  # more than once only where the strain twist comes in blocks
-            args = table, begin, s + 1, size, f0, g
-            begin += system.run_stages(state.time, state, Y, f, *args) - 1
-        return Y[s % 2], f
+        correction = self._defect.correction(size, error_constant(s), self._nothing)
+        return self.system.take_step(state, size, coefficients(s), f0, correction)
 
     def _accepted(self, state, f0, end):
-        """Try sizes until one is accepted; return it with what ``attempt`` made of it."""
+        """Try sizes until one is accepted; return it with its trial."""
         while True:
             size = self._followed(state, self._limited(end - state.time), end)
-            y, f1, velocities, error = self.attempt(state, f0, size)
-            share = self.system.guarded(y)
+            trial = self.attempt(state, f0, size)
+            error, share = trial.error / self.tolerance, self.system.guarded(trial.increment)
             if error <= 1.0 and share <= 1.0:
                 self._grow(size, error)
                 self._size = min(self._size, size * MOST_SHARE / max(share, 1e-10))
-                return size, y, f1, velocities
+                return size, trial
             self.rejected += 1
             self._previous = None
             self._size = size * _shrunk(error, share)

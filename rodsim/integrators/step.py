@@ -13,7 +13,7 @@ from rodsim.scene.state import State
 from rodsim.scene.system import RodSystem
 
 
-@dataclass(frozen=True)
+@dataclass(slots=True)
 class Step:
     """A step from ``start`` over ``size`` in time, with end increments and both end rates.
 

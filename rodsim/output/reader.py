@@ -10,11 +10,12 @@ from typing import Any, Self
 import numpy as np
 
 from rodsim.errors import FileError
-from rodsim.nodes import Rod, Rods
+from rodsim.nodes import Rods
 from rodsim.output import layout
 from rodsim.output.bodies import OfBodies
 from rodsim.output.checkpoint import read_checkpoint
 from rodsim.output.guarded import GuardedFile
+from rodsim.output.header import header_of, rods_of
 from rodsim.output.layout import CLOCK, OBSERVABLES, TRACERS, TRAJECTORY
 
 
@@ -50,7 +51,15 @@ class Trajectory(OfBodies):
     steps: np.ndarray
     planned: np.ndarray
     rods: Rods
+    format: int
     status: str
+    version: str
+    created: str
+    case_source: str
+    case_resolved: str
+    inputs: str
+    overrides: list[str]
+    resumes: list[str]
     units: dict[str, str]
     runtime: dict[str, Any]
 
@@ -58,7 +67,7 @@ class Trajectory(OfBodies):
         self.path = path
         self._file = GuardedFile(path)
         try:
-            self._read_header()
+            vars(self).update(header_of(self._file, path))
             self._read_frames()
         except BaseException:
             self.close()
@@ -186,71 +195,15 @@ class Trajectory(OfBodies):
             raise self._file.damaged("its case cannot be read (it has no keys)")
         return data
 
-    def _read_header(self):
-        file = self._file
-        try:
-            ours = file.attribute("/", "filetype", str) == layout.FILETYPE
-        except FileError:
-            ours = False
-        if not ours:
-            raise FileError(f"{self.path}: not a rodsim output")
-        self.format = file.attribute("/", "format", int)
-        if self.format > layout.FORMAT:
-            raise FileError(
-                f"{self.path}: has format {self.format}, of a newer rodsim; "
-                f"this one reads up to {layout.FORMAT}"
-            )
-        self.status, self.version, self.created = (
-            file.attribute("/", key, str) for key in ("status", "version", "created")
-        )
-        if self.status not in layout.STATUS:
-            raise file.damaged(f"its status is {self.status!r}")
-        self.case_source, self.case_resolved = file.text("case/source"), file.text("case/resolved")
-        self.inputs = file.text("case/inputs") if "inputs" in file.names("case") else ""
-        self.overrides = file.texts("case/overrides")
-        self.resumes = [text for text in file.texts("case/resumes") if text]
-        self.units = {
-            kind: file.attribute("case", f"{kind}_unit", str) for kind in ("length", "mass", "time")
-        }
-        unknown = (-1, "")
-        runtime = file.attributes("runtime").items()
-        self.runtime = {
-            k: v for k, v in runtime if v not in unknown and v == v
-        }  # NaN is not itself
-
     def _read_frames(self):
         self.frames = int(self._file.array("committed", "i", ()))
-        self.rods = self._read_rods()
+        self.rods = rods_of(self._file)
         self.points = self.rods.points
         self.time = self._rows(f"{CLOCK}/time", "f", ())
         self.steps = self._rows(f"{CLOCK}/step", "i", ())
         self.planned = self._file.array("case/times", "f", (None,), at_least=self.frames)
         if self.frames < 0 or not np.isfinite(self.time).all():
             raise self._file.damaged("frames without a time")
-
-    def _read_rods(self):
-        get = self._file.attribute
-        found = []
-        for name in self._file.names("rods"):
-            where = f"rods/{name}"
-            index, start, count = (get(where, key, int) for key in ("index", "first", "count"))
-            closed, spacing = get(where, "closed", bool), get(where, "spacing", float)
-            moduli = tuple(get(where, "moduli", float, (6,)).tolist())
-            found.append((index, where, Rod(name, start, count, closed, spacing, moduli)))
-        found.sort(key=lambda rod: rod[0])
-        return self._checked(found)
-
-    def _checked(self, found):
-        """Return the rods of ``found`` (index, place, record); each begins where one ends."""
-        rods, first = [], 0
-        for _, where, rod in found:
-            if rod.first != first or rod.count < 1:
-                raise self._file.damaged(f"{where} does not follow the rod before it")
-            if not all(0.0 < number < np.inf for number in (rod.spacing, *rod.moduli)):
-                raise self._file.damaged(f"{where} has a spacing or moduli that no rod can have")
-            rods.append(rod)
-            first += rod.count
-        return Rods(rods)
 
     def _values(self, where, shape, frames=slice(None)):
         return self._rows(f"{where}/value", "f", shape, frames)

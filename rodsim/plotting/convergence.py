@@ -1,11 +1,17 @@
 """Error against run time, and against what was varied."""
 
+import textwrap
+
 import numpy as np
 
 from rodsim.convergence.outcome import pairs
 from rodsim.convergence.report import fitted_order
 from rodsim.plotting import style
 
+WIDE = 1.5  # times as wide as high: the three panels then stand side by side
+ROOMY = 4.0  # inches of a panel that has room for a legend
+NUMBERS, NUMBER = 9, 0.33  # on a side at most; inches that each takes
+FRAME = 0.7  # inches of a panel beside its axes
 FEW_DECADES = 2.6  # on fewer, ticks stand at 2 and 5 as well
 MARKS = {"rkc": ("o", "#0b4f8a"), "euler": ("s", "#d1660f"), "rk4": ("^", "#3a7d2c")}
 SPACE = {
@@ -18,7 +24,7 @@ SIZES = {
     "time": "mean step / run",
     "points": "spacing / length",
     "body_points": "(points of bodies)^(-1/2)",
-    "epsilon": "epsilon / the case's own",
+    "epsilon": "epsilon / its own",
     "accuracy": "accuracy of the sums",
 }
 DASHES = {
@@ -38,16 +44,21 @@ TITLES = {
 
 
 @style.styled
-def plot_study(study, path) -> None:
+def plot_study(study, path, sheet=style.PLAIN) -> None:
     """Draw the errors against run time, evaluations, and what was varied, to a file."""
-    figure = style.new_figure(15, 4.8)
-    time, work, size = figure.subplots(1, 3, sharey=True)
-    draw_run_time(time, study)
-    draw_evaluations(work, study)
-    draw_orders(size, study)
-    time.set_ylabel(style.label("largest position error at the end", study.case.units.length))
-    figure.suptitle(study.case.title or "Error against run time")
-    style.save(figure, path)
+    figure = sheet.figure(15, 4.8, study.case.title or "Error against run time")
+    width, height = figure.get_size_inches()
+    abreast = width > WIDE * height
+    rows, columns = (1, 3) if abreast else (3, 1)
+    axes = figure.subplots(rows, columns, sharey=True)
+    for axis, draw in zip(axes, (draw_run_time, draw_evaluations, draw_orders), strict=True):
+        draw(axis, study)
+    error = style.label("largest position error at the end", study.case.units.length)
+    for axis in axes[:1] if abreast else axes:
+        axis.set_ylabel(error)
+    for axis in axes:
+        _fit(axis, width / columns, height / rows)
+    sheet.save(figure, path)
 
 
 def draw_run_time(axis, study):
@@ -77,6 +88,7 @@ def _draw_cost(axis, study, cost):
             marker, colour = SPACE.get(section.axis) or MARKS[method]
             label = f"{method}, {TITLES[section.axis]}"
             axis.loglog(costs, errors, DASHES[section.axis], marker=marker, c=colour, label=label)
+            _hollow(axis, costs, errors, part, marker, colour)
         if section.axis == "time" and section.own and section.own.position > 0.0:
             axis.axhline(section.own.position, c="0.6", lw=1, zorder=0)
             axis.annotate("the reference is good to this", (0.98, section.own.position),
@@ -97,8 +109,16 @@ def draw_orders(axis, study):
             label = f"{method}, {_what(section)}" + (f": slope {order:.2f}" if order else "")
             errors = [r.errors.position for r in part]
             axis.loglog(sizes, errors, DASHES[section.axis], marker=marker, c=colour, label=label)
+            _hollow(axis, sizes, errors, part, marker, colour)
     axis.set_xlabel(" or ".join(SIZES[section.axis] for section in study.sections))
     return _finish(axis)
+
+
+def _hollow(axis, x, errors, part, marker, colour):
+    """Mark the rows that are not run to the end."""
+    chosen = [k for k, r in enumerate(part) if r.row.part < 1.0]
+    if chosen:
+        axis.plot(np.take(x, chosen), np.take(errors, chosen), marker, mfc="white", c=colour)
 
 
 def _by_method(section):
@@ -128,33 +148,54 @@ def _what(section):
 
 def _finish(axis, legend=True):
     if axis.get_legend_handles_labels()[0]:  # there is something to see
+        if any(line.get_mfc() == "white" for line in axis.lines):
+            axis.plot([], [], "o", mfc="white", c="0.4", label="only the first part was run")
         if legend:
             axis.legend(frameon=False, fontsize=8)
-        for side, limits in ((axis.xaxis, axis.get_xlim()), (axis.yaxis, axis.get_ylim())):
-            _readable(side, *limits)
     axis.grid(which="major", color="0.9")
     axis.set_axisbelow(True)
     return axis
 
 
-def _readable(side, low, high):
-    """Give a logarithmic side up to nine numbers: powers of ten, or between them 2 and 5."""
+def _fit(axis, width, height):
+    """Lay a panel out for its width and height in inches: ticks, names, the legend."""
+    axis.set_xlabel(_wrapped(axis.get_xlabel(), width))
+    axis.set_ylabel(_wrapped(axis.get_ylabel(), height))
+    if axis.get_legend_handles_labels()[0]:
+        for side, limits, room in (
+            (axis.xaxis, axis.get_xlim(), width),
+            (axis.yaxis, axis.get_ylim(), height),
+        ):
+            _readable(side, *limits, int(min(NUMBERS, (room - FRAME) / NUMBER)))
+    if width < ROOMY and axis.get_legend():
+        axis.get_legend().remove()
+        labels = axis.get_legend_handles_labels()
+        axis.legend(*labels, frameon=False, fontsize=7, loc="lower left", bbox_to_anchor=(0, 1))
+
+
+def _wrapped(text, room):
+    """Return the name of a side in lines that fit so many inches."""
+    return textwrap.fill(text, max(8, int(style.CHARACTERS * (room - FRAME))))
+
+
+def _readable(side, low, high, most=NUMBERS):
+    """Give a logarithmic side up to ``most`` numbers: powers of ten, or between them 2 and 5."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     decades = np.log10(high / low)
-    between = (1.0, 2.0, 5.0) if decades < FEW_DECADES else (1.0,)
-    side.set_major_locator(LogLocator(subs=between, numticks=9))
+    between = (1.0, 2.0, 5.0) if decades < min(FEW_DECADES, most / 3.0) else (1.0,)
+    side.set_major_locator(LogLocator(subs=between, numticks=most))
     side.set_major_formatter(FuncFormatter(lambda value, place: number_text(value)))
     side.set_minor_formatter(NullFormatter())
 
 
 def number_text(value: float) -> str:
-    """Return a tick's number as it is written: plain from 0.001 to 10 000, else by powers of ten.
+    """Return a tick's number as it is written: plain from 0.001 to 50 000, else by powers of ten.
 
     >>> number_text(0.02), number_text(1e-6), number_text(2e5)
     ('0.02', '$10^{-6}$', '$2\\\\times10^{5}$')
     """
-    if 1e-3 <= value <= 1e4:
+    if 1e-3 <= value < 1e5:
         return f"{value:.6g}"
     power = int(np.floor(np.log10(value) + 1e-9))
     factor = round(value / 10.0**power)

@@ -42,7 +42,8 @@ def differences(
         stencil = stencils[axis // 3]
         for s in range(stencil.shape[0]):
             y[:] = 0.0
-            y[axis * n : (axis + 1) * n] = stencil[s, 0] * steps[axis]
+            for k in range(n):
+                y[axis * n + k] = stencil[s, 0] * steps[axis, k]
             displace(state, y, end)
             for group in range(count):
                 for k in range(n):

@@ -36,9 +36,9 @@ def sums_sentence(largest, accuracy: float) -> str:
 class SumErrors:
     """The largest errors of the fast sums that frames have; nothing where the sums are exact."""
 
-    def __init__(self, case):
-        sums = case.fluid.sums
-        self._accuracy, self._largest = sums and sums.accuracy, np.zeros(2)
+    def __init__(self, accuracy: float | None):
+        """``accuracy`` : what was asked of them, None for exact sums."""
+        self._accuracy, self._largest = accuracy, np.zeros(2)
 
     def add(self, observables: dict) -> None:
         """Take in the observables of a frame."""

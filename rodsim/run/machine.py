@@ -2,7 +2,7 @@
 
 from functools import cached_property
 
-from rodsim.compiled.threads import threads_for
+from rodsim.compiled.threads import pairs_worth, threads_for
 from rodsim.integrators.fastest_rate import FastestRate
 from rodsim.integrators.limits import Limits, check_step, stability
 from rodsim.integrators.make import make_integrator
@@ -32,8 +32,8 @@ class Machine:
     def threads(self, asked: int | None):
         """Return the context in which sums run with the threads this scene is worth."""
         scene = self.system.scene
-        sources = scene.rods.points
-        return threads_for(sources * (sources + scene.initial.tracer.shape[1]), asked)
+        tracers, at_wall = scene.initial.tracer.shape[1], scene.wall is not None
+        return threads_for(pairs_worth(scene.rods.points, tracers, scene.planar, at_wall), asked)
 
     def step_warnings(self) -> list:
         """Return problems of a fixed step near its limit; raises CaseError above it."""

@@ -63,7 +63,8 @@ class Recorder:
         self.system, self.integrator = machine.system, machine.integrator
         self.until_still, self.at_rest, self.end = False, False, machine.case.time.end
         self.gap, self.motion = machine.gap, Motion(machine.system.scene.parts.driven)
-        self.sum_errors = SumErrors(machine.case)
+        sums = machine.case.fluid.sums
+        self.sum_errors = SumErrors(sums and sums.accuracy)
         self.started, self.compile_seconds = started, compile_seconds
         self.writer, self.next_frame, self.output_seconds = None, 0, 0.0
         self.marched = self._checkpointed = self._synced = perf_counter()

@@ -25,29 +25,42 @@ from rodsim.processes import this_rodsim
 from rodsim.progress import SECONDS_BETWEEN_LINES
 
 LIST, LOCK = "compiled.json", "lock"
-MACHINE = "rodsim.run.machine"  # importing it compiles everything but the parts
+# Importing the first compiles everything but the parts; the others are large pieces of that.
+MACHINE = (
+    "rodsim.run.machine",
+    "rodsim.forces.elasticity",
+    "rodsim.scene.gap",
+    "rodsim.compiled.rotations",
+)
 BACKWARDS = "--backwards"
 
 
 def ensure_compiled(scene, say) -> float:
     """Compile what ``scene`` needs if this installation has not yet; return the seconds it took.
 
-    Call after ``settings.prepare``. ``say`` is called with a line for the user before the wait.
-    Of several processes that come at once one compiles, and the others wait for it.
+    ``say`` is called with a line for the user before the wait.
+    """
+    needed = ((part.where, *part.sums, *part.needs) for part in scene.parts)
+    return ensure({where for found in needed for where in found}, say, "this kind of scene")
+
+
+def ensure(names, say, what: str) -> float:
+    """Compile kernels ``module:name``, and what modules compile when they are imported.
+
+    Call after ``settings.prepare``. ``what`` they are for is said before the wait. Of several
+    processes that come at once one compiles, and the others wait for it. Returns the seconds.
     """
     if jit_is_off():
         return 0.0
     reason = why_not_kept()
     how = f"as at every run, for nothing can be kept ({reason})" if reason else "once"
-    compiling = f"compiling for this kind of scene, {how}; some seconds"
+    compiling = f"compiling for {what}, {how}; some seconds"
     if "NUMBA_CACHE_DIR" not in os.environ:  # no folder at all: the run itself compiles
         say(compiling)
         return 0.0
-    folder = Path(os.environ["NUMBA_CACHE_DIR"])
-    needed = ((part.where, *part.sums, *part.needs) for part in scene.parts)
-    kernels = sorted({where for found in needed for where in found})
+    folder, names = Path(os.environ["NUMBA_CACHE_DIR"]), sorted(names)
     # A folder that the user has set can be shared by several versions and installations.
-    kind = "-".join((fingerprint(), *kernels))
+    kind = "-".join((fingerprint(), *names))
     if is_compiled(folder, kind):
         return 0.0
     say(compiling)
@@ -56,7 +69,7 @@ def ensure_compiled(scene, say) -> float:
         if not is_compiled(folder, kind):
             if _is_ours(folder, kind) and not _undamaged(folder):
                 _clear(folder)
-            why = _compile_apart(folder, kernels, say)
+            why = _compile_apart(folder, names, say)
             if not why:
                 note_compiled(folder, kind)
             else:
@@ -64,13 +77,13 @@ def ensure_compiled(scene, say) -> float:
     return perf_counter() - start
 
 
-def _compile_apart(folder, kernels, say):
+def _compile_apart(folder, names, say):
     """Run ``main`` in a process of its own; say how far it is; return why it failed, if it did."""
     import subprocess  # what is compiled already has no use for it
 
     start, there = perf_counter(), _functions(folder)
     pipes = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
-    command = [*this_rodsim("rodsim.run.warmup"), *kernels]
+    command = [*this_rodsim("rodsim.run.warmup"), *names]
     with subprocess.Popen(command, **pipes, text=True) as process:
         try:
             while process.poll() is None:
@@ -138,21 +151,22 @@ def _clear(folder):
             file.unlink(missing_ok=True)
 
 
-def main(kernels) -> None:
+def main(names) -> None:
     """Fill the cache with what every run needs, and with the parts of one kind of scene.
 
-    In two processes, which begin at the two ends of the list. What one has compiled, the other
-    finds in the cache, and when the first is through, so is the list.
+    In two processes, which begin at the two ends of the list: one with the parts, the other with
+    the rest. What one has compiled, the other finds in the cache, and when the first is through,
+    so is the list.
     """
     import signal
     import subprocess
 
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that the helper is stopped too
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    command = [*this_rodsim("rodsim.run.warmup"), BACKWARDS, *kernels]
+    command = [*this_rodsim("rodsim.run.warmup"), BACKWARDS, *names]
     with subprocess.Popen(command, **quiet) as helper:
         try:
-            _compile([MACHINE, *kernels])
+            _compile([*names, *MACHINE])
         finally:
             helper.kill()
 
@@ -170,6 +184,6 @@ def _compile(names):
 
 if __name__ == "__main__":
     if BACKWARDS in sys.argv[1:2]:
-        _compile([*sys.argv[:1:-1], MACHINE])
+        _compile([*MACHINE[::-1], *sys.argv[:1:-1]])
     else:
         main(sys.argv[1:])

@@ -14,6 +14,7 @@ from rodsim.scene.at_wall import below_wall, near_wall
 from rodsim.scene.bodies import add_nodes, build_bodies
 from rodsim.scene.clearance import check_bodies
 from rodsim.scene.hooks import stiff_hooks
+from rodsim.scene.initial import initial_nodes
 from rodsim.scene.moduli import along_rods, typical
 from rodsim.scene.neighbours import coincident
 from rodsim.scene.rods import build_rods
@@ -49,10 +50,14 @@ def build_scene(case, stored=None) -> Scene:
     problems += _half_turns(case, rods, director)
     if problems:
         raise CaseError(problems)
-    tracer, groups = _tracers(case, rods, built)
     bodies = build_bodies(case, rods.points, case.fluid.blob, stored)
     arrays = {name: dict(kept) for name, kept in found.arrays.items()}
     position, director = add_nodes(case, rods, bodies, position, director, arrays)
+    if case.initial is not None and stored is None:
+        position, director = initial_nodes(case, rods, bodies, position, director)
+        if problems := _half_turns(case, rods, director):
+            raise CaseError(problems)
+    tracer, groups = _tracers(case, rods, position, director)
     scene = Scene(
         rods=rods,
         epsilon=epsilon,
@@ -152,15 +157,15 @@ def _half_turns(case, rods, director):
     return problems
 
 
-def _tracers(case, rods, built):
+def _tracers(case, rods, position, director):
     """Return tracer positions (3, P) and the number of markers of each group."""
     blocks, groups = [np.zeros((3, 0))], {}
     for name, group in case.tracers.items():
         if isinstance(group, tuple):
             block = np.array(group, dtype=float).T
         else:
-            position, director, _, closed = built[rods.names.index(group.rod)]
-            block = tube(group, position, director, closed)
+            rod = rods[rods.names.index(group.rod)]
+            block = tube(group, position[:, rod.nodes], director[:, :, rod.nodes], rod.closed)
         blocks.append(block)
         groups[name] = block.shape[1]
     return np.ascontiguousarray(np.concatenate(blocks, axis=1)), groups

@@ -1,4 +1,4 @@
-"""The one loop of all scenes: the stages of a step, each evaluation the sum of its parts.
+"""The one evaluation of all scenes: the sum of its parts, at increments from a state.
 
 Nothing here knows what acts in a scene: parts are called by their addresses, without a Python call
 in between.
@@ -16,7 +16,9 @@ from rodsim.compiled.flags import (
     call_part,
     inline,
     kernel,
+    unsigned,
 )
+from rodsim.compiled.kernels import evaluation
 from rodsim.compiled.rotations import displace, rotation_vector_rate
 from rodsim.scene.calls import (
     ACCOUNT,
@@ -31,10 +33,9 @@ from rodsim.scene.calls import (
 )
 
 CALLS = f"{INT_MAT}, {VEC}"  # scene.calls.Calls: table, numbers
-WORK = f"Tuple(({STATE}, {MAT}, {TRIADS}))"  # a state, loads, loads or velocities of each account
 
 
-@kernel(f"void({VEC}, {VEC})")
+@unsigned
 def to_increments(y, velocities):
     """Turn velocities at increments ``y`` into dy/dt, in place: w becomes d theta/dt.
 
@@ -92,7 +93,7 @@ def evaluate(table, numbers, driven, rods, state, loads, velocities, own):
             _add(mine, loads)
 
 
-@kernel(f"void({CALLS}, {MAT}, {MAT}, {TRIADS}, {VEC})")
+@unsigned
 def powers(table, numbers, loads, velocities, own, out):
     """Write the power of each account, what the fluid dissipates, all gauges: (Q + 1 + G,).
 
@@ -118,55 +119,21 @@ def powers(table, numbers, loads, velocities, own, out):
             out[place] = numbers[i]
 
 
-@inline
-def _first(mu_tilde, f0, g, Y):
-    """Y_1 = h mu~_1 (F_0 + g), after Y_0 = 0."""
-    for i in range(np.uint64(f0.size)):
-        Y[0, i] = 0.0
-        Y[1, i] = mu_tilde * (f0[i] + g[i])
+@evaluation
+def velocities_at(table, numbers, driven, rods, base, work, y, out):
+    """Write the velocities (u, w, u at the tracers, powers of the ledger) into ``out``.
 
-
-@inline
-def _combine(row, size, y, oldest, f, f0, g):
-    """Write Y_j, see below, over Y_(j-2)."""
-    mu, nu, mu_tilde, gamma_tilde = row[0], row[1], size * row[2], size * row[3]
-    for i in range(np.uint64(y.size)):
-        rates = mu_tilde * (f[i] + g[i]) + gamma_tilde * (f0[i] + g[i])
-        oldest[i] = mu * y[i] + nu * oldest[i] + rates
-
-
-@kernel(
-    f"void({CALLS}, {MAT}, {RODS}, {STATE}, {WORK}, {MAT}, int64, int64, float64, {VEC}, {VEC}, "
-    f"{MAT}, {VEC})"
-)
-def run_stages(calls, numbers, driven, rods, base, work, table, begin, end, size, f0, g, Y, f):
-    """Run the stages begin <= j < end of a three-term recurrence, with g added to all rates F,
-
-        Y_0 = 0,    Y_1 = h mu~_1 (F_0 + g),
-        Y_j = mu_j Y_(j-1) + nu_j Y_(j-2) + h (mu~_j (F_(j-1) + g) + gamma~_j (F_0 + g)),
-
-    with Y_j in row j % 2 of Y (2, n) and the four coefficients in row j of ``table``; then write
-    the velocities (u, w, u at the tracers, powers of the ledger) at Y_(end-1) into ``f``. With
-    begin = 2 it makes Y_0 and Y_1 first; with begin = end = 1 it evaluates at row 0 as it is.
-    Increments are those from the state ``base``. driven: the driven rows of these evaluations in
-    turn, or one that stands for all.
+    They are those at the increments ``y`` from the state ``base``, which is left displaced by them
+    in ``work``. driven : the driven rows at its time.
     """
     state, loads, own = work
     n, markers = loads.shape[1], state[2].shape[1]
     rods_end, tracers_end = 6 * n, 6 * n + 3 * markers
-    velocities = f[:rods_end].reshape(6, n), f[rods_end:tracers_end].reshape(3, markers)
-    if begin == 2:
-        _first(size * table[1, 2], f0, g, Y)
-    for j in range(begin, end + 1):
-        y = Y[(j - 1) % 2]
-        displace(base, y[:tracers_end], state)
-        _clear(loads)
-        for i in range(np.uint64(f.size)):
-            f[i] = 0.0
-        now = driven[j - begin if driven.shape[0] > 1 else 0]
-        evaluate(calls, numbers, now, rods, state, loads, velocities, own)
-        if f.size > tracers_end:
-            powers(calls, numbers, loads, velocities[0], own, f[tracers_end:])
-        if j < end:
-            to_increments(y[:rods_end], f[:rods_end])
-            _combine(table[j], size, y, Y[j % 2], f, f0, g)
+    displace(base, y[:tracers_end], state)
+    _clear(loads)
+    for i in range(np.uint64(out.size)):
+        out[i] = 0.0
+    velocities = out[:rods_end].reshape(6, n), out[rods_end:tracers_end].reshape(3, markers)
+    evaluate(table, numbers, driven, rods, state, loads, velocities, own)
+    if out.size > tracers_end:
+        powers(table, numbers, loads, velocities[0], own, out[tracers_end:])

@@ -6,7 +6,7 @@ import uuid
 from dataclasses import replace
 
 from rodsim.case import case_from_mapping
-from rodsim.case.starts import shapes_of
+from rodsim.case.starts import start_in
 from rodsim.errors import DivergedError, FileError
 from rodsim.scene.inputs import digests
 from rodsim.sweep.plan import Plan
@@ -27,8 +27,7 @@ def as_rests(plan: Plan, origin: str | None, options: tuple[str, ...] = ()) -> P
         source = runs[-1].output if origin == PREVIOUS and runs else origin
         data = run.data
         if source not in (None, PREVIOUS):
-            case = case_from_mapping(data)
-            data = case_from_mapping(data, shapes_of(case, source, -1)).resolved()
+            data = case_from_mapping(data, [start_in(source, -1)]).resolved()
         inputs = digests(data, run.folder)
         runs.append(replace(run, verb="rest", options=options, data=data, inputs=inputs))
     return Plan(runs, plan.key_units)

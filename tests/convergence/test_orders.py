@@ -24,7 +24,7 @@ class FixedRKC(RKC):
         self.step = step
 
     def _accepted(self, state, f0, end):
-        return self.step, *self.attempt(state, f0, self.step)[:3]
+        return self.step, self.attempt(state, f0, self.step)
 
     def _estimate_rate(self, state, f0):
         self.fastest_rate = (self.STAGES - 0.5) ** 2 / (1.54 * self.step)
@@ -34,7 +34,7 @@ class PlainRKC2(FixedRKC):
     """Without the correction by its own defect this is the RKC2 of the literature."""
 
     def steps(self, state, end):
-        self._defect.correction = lambda size, c: None
+        self._defect.accept = lambda third, size: None
         return super().steps(state, end)
 
 

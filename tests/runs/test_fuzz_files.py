@@ -21,7 +21,7 @@ import numpy as np
 np.seterr(all="ignore")
 from fuzz import damaged
 from rodsim.errors import FileError
-from rodsim.commands.reports import check_output, describe_output
+from rodsim.commands.stored_run import check_output, describe_output
 
 good, path = Path(sys.argv[1]).read_bytes(), Path(sys.argv[2])
 for seed in range(int(sys.argv[3]), int(sys.argv[4])):

@@ -103,7 +103,7 @@ def test_a_run_starts_from_a_rest_and_is_resumed(folder, tmp_path):
         start = last(folder / "rest.h5")[0]
         assert abs(run.position - start).max() < 1e-9
         assert run.frames == 3
-        assert run.case_data()["rods"]["ring"]["shape"]["path"] == str(folder / "rest.h5")
+        assert run.case_data()["initial"]["path"] == str(folder / "rest.h5")
 
 
 def test_stability_of_a_saddle_and_its_modes(folder, tmp_path):

@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
-from rodsim.compiled.threads import LAUNCH_SECONDS, PAIR_SECONDS, threads_worth
+from rodsim.compiled.threads import (
+    LAUNCH_SECONDS,
+    PAIR_SECONDS,
+    pairs_worth,
+    threads_worth,
+)
 
 # Sums over serial by tbb, of M points on 2, 4, 8, 16 threads: measured, docs/notes/performance.md.
 COUNTS = (1, 2, 4, 8, 16)
@@ -41,3 +46,12 @@ def test_layers_that_let_threads_sleep_need_longer_sums():
     serial = 2e-4
     assert threads_worth(serial, "tbb", 2) == 2
     assert threads_worth(serial, "omp", 2) == threads_worth(serial, "workqueue", 2) == 1
+
+
+def test_a_pair_costs_what_its_sum_costs():
+    """Ratios measured, docs/notes/performance.md: planar 0.49, without w 1/1.8, at a wall 2.0."""
+    plain = pairs_worth(137, 0, False, False)
+    assert plain == 137**2
+    assert pairs_worth(137, 0, True, False) == pytest.approx(0.5 * plain)
+    assert pairs_worth(137, 0, False, True) == pytest.approx(2.0 * plain)
+    assert pairs_worth(137, 411, False, False) == pytest.approx((1.0 + 3.0 / 1.8) * plain, rel=0.01)

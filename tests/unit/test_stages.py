@@ -35,29 +35,41 @@ def one_step(overrides):
     state.time = 1.3e-5
     f0 = system.velocities(state.time, state, system.zeros(), system.zeros())
     before = system.evaluations
-    y, f1, velocities, _ = integrator.attempt(state, f0, SIZE)
-    return system, state, f0, y, f1, velocities, system.evaluations - before
+    trial = integrator.attempt(state, f0, SIZE)
+    return system, state, f0, trial, system.evaluations - before
 
 
 @pytest.mark.parametrize("overrides", [(), (DRIVEN,), ("tracers=null",)])
 def test_stages_are_those_of_the_method(overrides):
-    system, state, f0, y, f1, velocities, evaluations = one_step(overrides)
+    system, state, f0, trial, evaluations = one_step(overrides)
     assert evaluations == STAGES
     expected = written_out(system, state, f0, SIZE, STAGES)
     # The same numbers but for rounding, of which s stages make about s^2 units.
-    assert y == pytest.approx(expected, abs=1e-13 * abs(expected).max())
+    assert trial.increment == pytest.approx(expected, abs=1e-13 * abs(expected).max())
     end = state.time + SIZE
-    size = abs(f1).max()
-    assert f1 == pytest.approx(system.rate(end, state, expected, system.zeros()), abs=1e-9 * size)
-    assert velocities == pytest.approx(
-        system.velocities(end, state, expected, system.zeros()), abs=1e-9 * size
-    )
+    tolerance = 1e-9 * abs(trial.rates).max()
+    rates = system.rate(end, state, expected, system.zeros())
+    assert trial.rates == pytest.approx(rates, abs=tolerance)
+    velocities = system.velocities(end, state, expected, system.zeros())
+    assert trial.velocities == pytest.approx(velocities, abs=tolerance)
+
+
+@pytest.mark.parametrize("overrides", [(), (DRIVEN,)])
+def test_the_geometry_left_by_a_step_is_that_of_its_increments(overrides):
+    system, state, _, trial, _ = one_step(overrides)
+    end = system.state_at(state, state.time + SIZE, trial.increment)
+    assert all(map(np.array_equal, trial.geometry, end.geometry))
+    assert not np.array_equal(trial.geometry[1], state.director)
 
 
 def test_strain_twist_in_blocks_gives_the_same_bits(monkeypatch):
-    whole = one_step((DRIVEN,))[3]
+    *_, whole, made = one_step((DRIVEN,))
     monkeypatch.setattr(row_module, "LARGEST_BLOCK", 3 * 3 * 14)
-    assert np.array_equal(one_step((DRIVEN,))[3], whole)
+    *_, blocks, made_in_blocks = one_step((DRIVEN,))
+    assert made_in_blocks == made
+    assert blocks.error == whole.error
+    for one, other in zip(blocks[1:], whole[1:], strict=True):
+        assert all(map(np.array_equal, one, other))
 
 
 def test_strain_twist_at_several_times_is_that_of_each():

@@ -1,11 +1,15 @@
 """What a start does not wait for: each is imported only by who uses it."""
 
+import json
 import os
 import subprocess
 import sys
 
 import pytest
+from outputs import create, write
 from scenes import CONFIGS
+
+from rodsim.output import CaseText
 
 VALIDATE = """
 import sys
@@ -18,8 +22,15 @@ COMPILED = """
 import sys
 from rodsim.compiled.settings import prepare
 prepare()
-from rodsim.compiled.passes import weighted_sum
-print(weighted_sum.stats.cache_hits and "numba.np.arraymath" in sys.modules, "scipy" in sys.modules)
+from rodsim.compiled.rotations import displace
+print(displace.stats.cache_hits and "numba.np.arraymath" in sys.modules, "scipy" in sys.modules)
+"""
+INFO = """
+import sys
+from pathlib import Path
+from rodsim.commands.stored_run import describe_output
+print("viscosity 0.0027 g um^-1 s^-1 (2700 mPa s)" in describe_output(Path(sys.argv[1])))
+print(sorted({"pydantic", "numba", "yaml", "rodsim.case.model"} & set(sys.modules)))
 """
 END = """
 import atexit, gc, sys
@@ -39,6 +50,21 @@ def said_by(code, *arguments):
 
 def test_a_case_is_checked_without_numba_and_hdf5():
     assert said_by(VALIDATE, CONFIGS / "closed_ring.yaml") == "[]"
+
+
+def test_an_output_is_described_without_what_reads_a_case(tmp_path):
+    rod = {"moduli": {"bending": [0.3, "0.2 + s"], "twisting": 0.2, "shear": 0.7, "stretch": 0.9}}
+    case = {
+        "title": "a t that is no time",
+        "fluid": {"viscosity": 2.7e-3, "blob": "algebraic7", "epsilon": {"spacings": 3.0}},
+        "rods": {"zeta": rod, "alpha": rod},
+        "time": {"end": 1.7, "integrator": "rkc", "tolerance": 1e-5},
+    }
+    text = CaseText("", json.dumps(case), [])
+    with create(tmp_path / "out.h5", case=text) as writer:
+        write(writer, range(3))
+        writer.finish("finished", {})
+    assert said_by(INFO, tmp_path / "out.h5").splitlines() == ["True", "[]"]
 
 
 @pytest.mark.compiled

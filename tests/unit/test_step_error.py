@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from rodsim.integrators.defect import MEMORY, Defect
+from rodsim.compiled.passes import remaining
+from rodsim.integrators.defect import MEMORY
 from rodsim.integrators.rkc import coefficients, error_constant
 
 SIZE, CONSTANT = 0.37, 0.066
@@ -38,25 +39,31 @@ def size_of(error, weights):
     return np.sqrt(max(*rods, scaled[6 * n :].mean()))
 
 
+def given(memory, y, velocities, f0, g, weights):
+    """Return the size of the error and the rates at the end, as the compiled pass gives them."""
+    f1, third, error = np.empty((3, y.size))
+    step = SIZE, CONSTANT, memory, y, velocities, f0, g
+    return remaining(*step, weights, FIRST, COUNT, f1, third, error), f1, third
+
+
 @pytest.mark.parametrize("corrected", [True, False])
 def test_the_error_left_by_a_step(numbers, corrected):
     y, velocities, f0, g, weights = numbers
-    given = Defect().remaining(
-        SIZE, CONSTANT, y, velocities, f0, g if corrected else None, (weights, FIRST, COUNT)
-    )
-    f1 = rates(y, velocities)
     memory, g = (MEMORY, g) if corrected else (1.0, 0.0 * g)
+    size, given_f1, third = given(memory, y, velocities, f0, g, weights)
+    f1 = rates(y, velocities)
     rest = SIZE * (f0 + f1) / 2 - y + memory * SIZE * g
     error = CONSTANT * rest / (1 / 12 + memory * CONSTANT) - SIZE * g
-    np.testing.assert_allclose(given[0], f1, rtol=0, atol=ROUNDING * np.abs(f1).max())
-    assert given[1] == pytest.approx(size_of(error, weights), rel=ROUNDING)
+    np.testing.assert_allclose(given_f1, f1, rtol=0, atol=ROUNDING * np.abs(f1).max())
+    expected = rest / (1 / 12 + memory * CONSTANT) / SIZE**3
+    np.testing.assert_allclose(third, expected, rtol=0, atol=ROUNDING * np.abs(expected).max())
+    assert size == pytest.approx(size_of(error, weights), rel=ROUNDING)
 
 
 def test_an_error_that_is_no_number_shows(numbers):
     y, velocities, f0, g, weights = numbers
     velocities[2] = np.nan
-    given = Defect().remaining(SIZE, CONSTANT, y, velocities, f0, g, (weights, FIRST, COUNT))
-    assert np.isnan(given[1])
+    assert np.isnan(given(MEMORY, y, velocities, f0, g, weights)[0])
 
 
 @pytest.mark.parametrize("s", [4, 7, 31])

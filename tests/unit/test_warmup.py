@@ -88,7 +88,7 @@ FIRST = """
 import importlib, os, pkgutil, sys
 import h5py, numba, numpy, pydantic
 import rodsim
-for room in "compiled", "forces", "flows", "blocks", "integrators", "run":
+for room in "compiled", "forces", "flows", "blocks", "integrators", "scene", "run":
     package = importlib.import_module(f"rodsim.{room}")
     names = [each.name for each in pkgutil.iter_modules(package.__path__, f"rodsim.{room}.")]
     for name in names:
@@ -129,7 +129,8 @@ def test_once_is_not_said_where_nothing_can_be_kept(monkeypatch):
     monkeypatch.delenv("NUMBA_CACHE_DIR")
     monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
     monkeypatch.setattr(settings, "_not_kept", ["/home/me/.cache: Read-only file system"])
-    assert warmup.ensure_compiled(load("closed_ring"), said.append) == 0.0
+    scene = build_scene(load("closed_ring"))
+    assert warmup.ensure_compiled(scene, said.append) == 0.0
     assert said == [
         "compiling for this kind of scene, as at every run, for nothing can be kept "
         "(/home/me/.cache: Read-only file system); some seconds"
