@@ -9,6 +9,7 @@ from click.testing import CliRunner
 
 import rodsim
 from rodsim.cli import main
+from rodsim.convergence.side_by_side import Runs
 from rodsim.errors import CaseError, UsageError
 from rodsim.flows.card import device as devices
 from rodsim.scene.device import on_device
@@ -172,6 +173,19 @@ def test_without_numba_cuda_too(monkeypatch):
     with pytest.raises(UsageError, match=r"numba-cuda is not installed.*rodsim\[gpu\]"):
         rodsim.velocity([[0, 0, 0]], [[1, 0, 0]], [[1, 2, 3]], [[3, 2, 1]], 0.3, 0.7, device="gpu")
     devices.card.cache_clear()
+
+
+def test_runs_of_a_study_share_no_card(tmp_path, monkeypatch):
+    monkeypatch.setattr("rodsim.convergence.side_by_side.usable_cores", lambda: 3)
+    (tmp_path / "case.yaml").write_text(CASE)
+    found = []
+    for device in ("cpu", "gpu"):
+        runs = Runs(None)
+        for end in (2e-6, 3e-6):
+            other = rodsim.load_case(tmp_path / "case.yaml", {"time.end": end})
+            runs.ask("run", other.on(device), 1e12)
+        found.append(runs.side_by_side)
+    assert found == [2, 1]
 
 
 def test_fast_sums_are_for_the_cpu(tmp_path):
