@@ -34,8 +34,8 @@ rods:
     shape: {kind: helix, radius: 0.8, pitch: 3.0, points: n, length: 0.07*n, origin: [0, 2.9*i, 0]}
     moduli: {bending: 3.5e-3, twisting: 2.5e-3, shear: 0.7, stretch: 0.9}
     strain_twist: ["0.6 + 0.2*sin(0.3*s)", 0, 0.3]
-time: {end: 3.0e-4}
-output: {interval: 1.0e-4}
+time: {end: 1.5e-3}
+output: {interval: 5.0e-4}
 """
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from multiprocessing import active_children, get_context, parent_process
 from typing import Any
 
+from rodsim.compiled.constants import GPU
 from rodsim.compiled.settings import prepare
 from rodsim.errors import CaseError, DivergedError
 from rodsim.processes import usable_cores
@@ -85,6 +86,8 @@ class Runs:
     @property
     def side_by_side(self) -> int:
         """How many runs go on at once; each is then on ``threads`` threads, or on one."""
+        if any(run.case.device == GPU for run in self._asked.values()):
+            return 1  # on one card they would only wait for each other, and be timed so
         seconds = PAIR_SECONDS * sum(run.weight for run in self._asked.values())
         most = min(usable_cores() // (self.threads or 1), len(self._asked))
         return most if most > 1 and seconds > WORTHWHILE else 1
