@@ -18,7 +18,7 @@ AXES = ("tolerance", "step")
 RESTS = ("michell_ring",)  # for rodsim rest: nothing of it moves
 COLUMNS = ("scene", "end", "of the run", "points", "method", "value", "status", "error / length",
            "reference / length", "evaluations", "seconds", "part run")  # fmt: skip
-SLACK = 1.001  # the tightest tolerance and the check of the reference may differ by rounding
+NEAR = 2.0  # times the error of the reference: below it errors are the same
 TEXTS = ("scene", "method", "status")
 PARTS = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)  # of a run
 DECADES = (1e2, 1e1, 1.0, 1e-1, 1e-2)  # tolerances, over a scene's own
@@ -145,7 +145,7 @@ def table(rows):
 def _beside(row, done):
     """Say what a method of fixed step comes to, and how much more that is than rkc takes."""
     mark = "*" if row["part run"] < 1.0 else ""
-    near = "~" if row["error / length"] < 2.0 * (row["reference / length"] or 0.0) else ""
+    near = "~" if row["error / length"] < NEAR * (row["reference / length"] or 0.0) else ""
     text = f"{mark}{near}{row['error / length']:.0e}, {row['evaluations']:.3g}"
     rkc = _as_good(row, done)
     if rkc is None:
@@ -156,14 +156,9 @@ def _beside(row, done):
 
 def _as_good(row, others):
     """Return the cheapest row of rkc with no larger an error, or None."""
-    enough = SLACK * _floor(row)
+    enough = max(row["error / length"], NEAR * (row["reference / length"] or 0.0))
     good = [r for r in others if r["method"] == "rkc" and r["error / length"] <= enough]
     return min(good, key=lambda r: r["evaluations"], default=None)
-
-
-def _floor(row):
-    """Return a row's error, or what the reference may err where that is more."""
-    return max(row["error / length"], row["reference / length"] or 0.0)
 
 
 def draw(rows, path):
