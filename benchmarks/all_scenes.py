@@ -125,8 +125,8 @@ def _number(text):
 
 def table(rows):
     """Yield a line of Markdown for each scene: rkc at its own tolerance, beside Euler and RK4."""
-    heads = ["scene", "points", "of its time", "rkc at 1e-n: error, evaluations, s"]
-    heads += [f"{method}: error, evaluations, over rkc as good" for method in ("euler", "rk4")]
+    heads = ["scene", "points", "part", "rkc at its tolerance: error, evaluations, s"]
+    heads += [f"{method}: error, evaluations, over rkc" for method in ("euler", "rk4")]
     yield "| " + " | ".join(heads) + " |"
     yield "|---" * len(heads) + "|"
     for scene in sorted(dict.fromkeys(row["scene"] for row in rows)):
@@ -146,12 +146,12 @@ def _beside(row, done):
     """Say what a method of fixed step comes to, and how much more that is than rkc takes."""
     mark = "*" if row["part run"] < 1.0 else ""
     near = "~" if row["error / length"] < NEAR * (row["reference / length"] or 0.0) else ""
-    text = f"{mark}{near}{row['error / length']:.0e}, {row['evaluations']:.3g}"
+    text = f"{mark}{near}{row['error / length']:.0e}, {row['evaluations']:.0f}"
     rkc = _as_good(row, done)
     if rkc is None:
         return f"{text}, none"
     ratios = (row[key] / rkc[key] for key in ("evaluations", "seconds"))
-    return text + ", " + " / ".join(f"{ratio:.2g}" for ratio in ratios)
+    return f"{text}, " + " / ".join(f"{r:.1f}" if r < 10.0 else f"{r:.0f}" for r in ratios)
 
 
 def _as_good(row, others):
@@ -180,7 +180,7 @@ def draw(rows, path):
         axis.set_axisbelow(True)
     style.legend_above(axes[0])
     axes[0].set_ylabel("largest position error at the end, over the longest rod")
-    style.save(figure, path)
+    style.save(figure, path, dpi=110)
 
 
 def _draw_line(axis, method, cost, rows):
