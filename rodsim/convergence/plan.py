@@ -43,14 +43,16 @@ def plan(case, scene, limits, axes, whole=False) -> list[Part]:
     """
     made, rate = [], limits.rate
     timed = [axis for axis in axes if axis in TIMED]
+    twin = rows.own_row(case, rate)
     if timed:
         made.append(_time(case, limits, timed, whole))
+        twin = made[0].twin  # rounding is the same in all sections
     if "points" in axes:
         _need_formulas(case)
-        made.append(_points(case, rate, scene))
+        made.append(_points(case, rate, scene, twin))
     if "body_points" in axes:
         _need_bodies(case)
-        made.append(_body_points(case, rate))
+        made.append(_body_points(case, rate, twin))
     if "epsilon" in axes:
         made.append(_epsilon(case, rate, scene))
     if "accuracy" in axes:
@@ -77,24 +79,24 @@ def _time(case, limits, timed, whole):
             fixed, stretch = shorten_costly(fixed, reference, case)
         found += fixed
     words = f"rkc at tolerance {reference.value:g}, held against tolerance {check.value:g}"
-    twin = rows.twin_row(case, limits.rate)
-    return Part("time", words, [reference, *found], check, twin, stretch)
+    # A last bit may change which steps are taken: beside the check's own error that is little.
+    return Part("time", words, [reference, *found], check, twin=check, stretch=stretch)
 
 
-def _points(case, rate, scene):
+def _points(case, rate, scene, twin):
     found = rows.points_rows(case, rate, scene.epsilon)[::-1]
     words = f"{found[0].value:.0f} points; its error by order 2 from {found[1].value:.0f}"
-    return Part("points", words, found, found[1], rows.twin_row(case, rate))
+    return Part("points", words, found, found[1], twin)
 
 
-def _body_points(case, rate):
+def _body_points(case, rate, twin):
     found = rows.body_rows(case, rate)[::-1]
     words = f"{found[0].value} points of bodies, held against {found[1].value}"
-    return Part("body_points", words, found, found[1], rows.twin_row(case, rate))
+    return Part("body_points", words, found, found[1], twin)
 
 
 def _epsilon(case, rate, scene):
-    own = replace(rows.twin_row(case, rate), axis="epsilon")
+    own = replace(rows.own_row(case, rate), axis="epsilon")
     words = f"the case's own epsilon, {scene.epsilon:.6g}"
     return Part("epsilon", words, [own, *rows.epsilon_rows(case, rate, scene.epsilon)])
 

@@ -104,7 +104,7 @@ class Study:
             self._cases[row] = f"{REFUSED}: {error.problems[0].reason}"
             return
         self._cases[row] = case
-        repeats = 1 if nudged or row.axis in ("time", "twin") else REPEATS
+        repeats = 1 if nudged or row.axis in ("time", "own") else REPEATS
         label = f"{row.method} {row.axis} {row.value:g}"
         self._runs.ask(label, case, self._weight(row), nudged, repeats)
 

@@ -180,11 +180,12 @@ def _wrapped(text, room):
 
 def _readable(side, low, high, most=NUMBERS):
     """Give a logarithmic side up to ``most`` numbers: powers of ten, or between them 2 and 5."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
-    decades = np.log10(high / low)
-    between = (1.0, 2.0, 5.0) if decades < min(FEW_DECADES, most / 3.0) else (1.0,)
-    side.set_major_locator(LogLocator(subs=between, numticks=most))
+    few = np.log10(high / low) < min(FEW_DECADES, most / 3.0)
+    side.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,), numticks=most))
+    if not few:  # each small tick of many decades takes its time
+        side.set_minor_locator(NullLocator())
     side.set_major_formatter(FuncFormatter(lambda value, place: number_text(value)))
     side.set_minor_formatter(NullFormatter())
 

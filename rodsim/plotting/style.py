@@ -106,7 +106,8 @@ def styled(draw):
 
 def save(figure, path, dpi=RASTER_DPI) -> None:
     """Write a figure as .png, .pdf or .svg, whole or not at all; raises FileError."""
-    settle(figure)
+    if not all(map(_stretches, figure.axes)):  # else savefig's own layout will do: it takes long
+        settle(figure)
     with replacing(path) as temporary, drawing(path):
         figure.savefig(temporary, dpi=dpi)
 
@@ -116,6 +117,11 @@ def settle(figure) -> None:
     if layout := figure.get_layout_engine():
         for _ in range(2):
             layout.execute(figure)
+
+
+def _stretches(axis) -> bool:
+    """Tell whether an axis fills the room that it is given, whatever its scales."""
+    return axis.name == "rectilinear" and axis.get_aspect() == "auto" and not axis.get_box_aspect()
 
 
 def refuse_cut(figure) -> None:
