@@ -9,7 +9,6 @@ import numpy as np
 from rodsim.blocks.ends import end_node, held_ends
 from rodsim.errors import CaseError, FileError
 from rodsim.forces.places import rod_named
-from rodsim.output import open_trajectory
 from rodsim.scene.bodies import stored_nodes
 from rodsim.scene.stored import AGREES, find_file, in_unit
 
@@ -20,6 +19,8 @@ def initial_nodes(case, rods, bodies, position, director):
     position, director : of all nodes as the case builds them. Ends that are held in space stay
     there, with ``move`` at t = 0. Raises CaseError and FileError.
     """
+    from rodsim.output import open_trajectory  # HDF5 is for who begins in an output
+
     folder = Path(case.source.path).parent if case.source and case.source.path else Path()
     try:
         path = find_file(case.initial.path, folder)
