@@ -25,7 +25,7 @@ from rodsim.case.methods import METHODS
 from rodsim.run.listener import Listener, Summary
 
 SHARE = 0.9  # of the longest stable step
-MOST_SECONDS = 60.0
+MOST_SECONDS = 300.0
 MOST_PAIRS = 2e9  # of large scenes, euler and rk4 run a shorter stretch
 TIGHTER = 1e-4
 FRAMES = 4

@@ -20,7 +20,8 @@ from rodsim.scene.system import RodSystem
 REPEATS = 3
 BESIDE = 50_000  # pairs that all but the sums takes as long as, in an evaluation
 ROUNDING = 1e-12  # of the longest rod: what a last bit is after a stable run
-AMPLIFIED = 0.1  # of the reference's own error: rounding is then part of it
+AMPLIFIED = 0.3  # of the reference's own error: rounding is then part of it. A last bit that
+# changes which steps are taken came to 0.11 of it on the ring, where it grows only 400 times.
 DONE = ""
 
 
