@@ -126,7 +126,7 @@ class Evaluation:
     def __init__(self, size, threads):
         self._build(size)  # imports and compiles
         tracemalloc.start()
-        self._build(size)
+        system = self._build(size)
         self.memory, _ = tracemalloc.get_traced_memory()
         tracemalloc.stop()
         begin = time.perf_counter()
@@ -197,11 +197,12 @@ def draw(rows, errors, left, right):
             curve(left, chosen, "points", key, label=label, color=f"C{k}")
     for accuracy, points in PUBLISHED.items():
         left.axvline(points, color="0.5", linestyle=":")
-        left.annotate(f" {points}: {accuracy:g}", (points, 1.0), xycoords=("data", "axes fraction"),
-                      rotation=90, va="top", color="0.4", fontsize="small")  # fmt: skip
-    left.plot([], [], color="0.5", linestyle=":", label="another method pays from here (2006)")
+        label, at = f" {accuracy:.0e}".replace("e-0", "e-"), (points, 0.01)
+        style = {"rotation": 90, "va": "bottom", "color": "0.4", "fontsize": "small"}
+        left.annotate(label, at, xycoords=("data", "axes fraction"), **style)
+    left.plot([], [], color="0.5", linestyle=":", label="a multipole method of 2006 pays")
     left.set(xscale="log", yscale="log", xlabel="M, points of a ring", ylabel="ms")
-    left.legend(title=f"{count} threads", fontsize="small")
+    left.legend(title=f"threads: {count}", fontsize="small")
     for k, name in enumerate(ERROR_SCENES):
         own = [row for row in errors if row["scene"] == name]
         cost = [row["fast"].median for row in own]

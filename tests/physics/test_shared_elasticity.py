@@ -15,12 +15,13 @@ MODULI = np.array([3.1e-3, 4.7e-3, 2.3e-3, 0.83, 0.71, 1.3])  # nothing equal, n
 NAMES = "bending", "twisting", "shear", "stretch"
 KINDS = {
     "a ring over the ends of runs": [(2 * RUN + 3, True, 0.13)],
+    "a ring whose last point begins a run": [(RUN + 1, True, 0.13), (7, False, 0.2)],
     "one that ends with a run, and others": [
         (RUN, False, 0.13),
         (5, True, 0.4),
         (RUN, True, 0.2),
     ],
-    "rods cut by the end of a run": [(RUN - 1, True, 0.13), (RUN + 1, False, 0.3), (3, False, 0.2)],
+    "rods cut by the end of a run": [(RUN - 1, True, 0.13), (9, False, 0.3)],
 }
 
 

@@ -14,7 +14,6 @@ and positive in all modes. It makes a twentieth of the accuracy in smooth loads.
 from __future__ import annotations
 
 import math
-from itertools import islice
 
 import numpy as np
 
@@ -33,7 +32,7 @@ from rodsim.flows.free import EIGHT_PI
 WIDE, NARROW = 0.8, 0.5  # theta of a rough and of a fine sum
 FINE = 1e-4  # from here on a sum is fine
 LARGE = 50_000  # points: errors of far arcs add up, and smoothness is asked twice as much of
-MORE, SHARP = (4, 12), 1e-7  # so many more proxies are tried, down to that accuracy
+MORE, SHARP = (4, 12, 20), 1e-7  # so many more proxies are tried, down to that accuracy
 STRICTER = (  # shares of theta and smoothness
     (1.0, 1.0), (0.8, 0.2), (0.65, 0.05), (0.5, 0.01), (0.35, 1e-3), (0.25, 1e-4)
 )  # fmt: skip
@@ -134,11 +133,11 @@ class RodSum(FastSum):
         return self.tables(points, self.bounds(points), next(self.rules()), sample)
 
     def foreseen(self, points) -> int:
-        """Return the pairs by the first two rules together: either may be the one that holds."""
+        """Return twice the pairs by the first rule, which holds more often, and the second's."""
         sample, bounds, total = _spread_out(self.arcs.points), self.bounds(points), 0
-        for rule in islice(self.rules(), 2):
+        for weight, rule in zip((2, 1), self.rules(), strict=False):
             self.tables(points, bounds, rule, sample)
-            total += self.pairs
+            total += weight * self.pairs
         return total
 
     def prepare(self, points, loads) -> np.ndarray:
