@@ -21,11 +21,11 @@ from rodsim.export.run import tube_radius
 from rodsim.export.stage import build_stage, grid_spacing, packed
 from rodsim.files import replacing
 from rodsim.plotting import style
+from rodsim.plotting.colours import of_rods, scale_of, sequential
 from rodsim.plotting.energy import draw_energies
 
 FRAMES = 200  # at most, where none are asked for
 COLOURS = ("rod", "time", "curvature", "twist")
-PALETTE, ONE_SIGN, TWO_SIGNS = "tab10", "viridis", "coolwarm"
 SHADES = 255  # of a colour map: a value is one byte
 
 
@@ -40,8 +40,7 @@ def write_page(run, path, *, frames=None, radius=None, colour="rod") -> int:
         raise FileError(f"{run.path}: has no frames yet ({run.status})")
     chosen = spread_frames(run.frames, frames or FRAMES)
     radius = radius or tube_radius(run)
-    palette = style.colour_map(PALETTE).colors
-    hues = [packed(palette[number % len(palette)]) for number in range(len(run.rods))]
+    hues = [packed(colour) for colour in of_rods(run.rods.names).values()]
     stage = build_stage(run, chosen, radius, hues)
     unit = style.pretty_unit(run.units["length"])
     data = _panel(run, chosen, colour) | {
@@ -75,7 +74,7 @@ def _panel(run, chosen, colour):
         "times": [float(time) for time in run.time[chosen]],
         "time_unit": style.pretty_unit(run.units["time"]),
         "colour": colour,
-        "scales": {"time": _scale(run.time[chosen], run.units["time"], ONE_SIGN)},
+        "scales": {"time": _scale(run.time[chosen], run.units["time"], sequential())},
     }
     if "director" in run.fields:
         values = np.array([at_points(run.rods, run.read("director", frame)) for frame in chosen])
@@ -88,24 +87,20 @@ def _panel(run, chosen, colour):
 
 def _along(values, run):
     """Return the scale of a quantity (T, N), and its values as bytes, rod by rod."""
-    signs = values.min() < 0.0 < values.max()
-    most = max(np.abs(values).max(), 1e-300)
-    low, high = (-most, most) if signs else (min(values.min(), 0.0), max(values.max(), 0.0))
-    shades = np.uint8(np.round(SHADES * (values - low) / ((high - low) or 1.0)))
-    packed_rods = []
+    unit = f"{run.units['length']}^-1"
+    scale = scale_of([values], "", unit)
+    parts = np.clip((values - scale.low) / (scale.high - scale.low), 0.0, 1.0)
+    shades, packed_rods = np.uint8(np.round(SHADES * parts)), []
     for rod in run.rods:
         of_rod = shades[:, rod.nodes]
         if rod.closed:
             of_rod = np.concatenate([of_rod, of_rod[:, :1]], axis=1)
         packed_rods.append(base64.b64encode(of_rod.tobytes()).decode())
-    unit = f"{run.units['length']}^-1"
-    scale = _scale(np.array([low, high]), unit, TWO_SIGNS if signs else ONE_SIGN)
-    return scale | {"values": packed_rods}
+    return _scale([scale.low, scale.high], unit, scale.colours) | {"values": packed_rods}
 
 
-def _scale(ends, unit, name):
+def _scale(ends, unit, colours):
     """Return what a colour bar says: ends, unit, and colours from 0 to 1 as K3D has them."""
-    colours = style.colour_map(name)
     stops = [(x, *colours(x)[:3]) for x in np.linspace(0.0, 1.0, 33).tolist()]
     texts = [f"{ends[0]:.3g}", f"{ends[-1]:.3g} {style.pretty_unit(unit)}"]
     return {"ends": texts, "map": [round(part, 4) for stop in stops for part in stop]}
