@@ -12,6 +12,13 @@ import sys
 sys.setswitchinterval(1e-5)  # who waits for the threads of a block does so by asking
 import rodsim.flows.card.kernels as kernels
 kernels.THREADS, kernels.BLOCKS, kernels.LEAST = 3, 4, 3
+from threading import Lock
+from numba.cuda.simulator.kernelapi import FakeCUDAShared
+unsafe, one_at_a_time = FakeCUDAShared.array, Lock()
+def array(self, shape, dtype):  # two threads at once would each get memory of its own
+    with one_at_a_time:
+        return unsafe(self, shape, dtype)
+FakeCUDAShared.array = array
 """
 SIMULATED = {"NUMBA_ENABLE_CUDASIM": "1", "NUMBA_DISABLE_JIT": "1"}
 
