@@ -13,7 +13,9 @@ class Initial(Model):
     """The state to begin with: places of rods and bodies in an output, in place of the shapes.
 
     The shapes still say what the scene is made of: what is natural to a rod, where ends are held
-    and ``move`` counts from, how a rod sits on a body, a hook that bears no load.
+    and ``move`` counts from, how a rod sits on a body, a hook that bears no load. Time starts at 0,
+    and what depends on it with it: to go on with a run, ``resume`` it. ``perturb`` disturbs the
+    shapes, not this state.
     """
 
     path: str = Field(min_length=1, description="an output of rodsim")

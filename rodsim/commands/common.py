@@ -19,7 +19,7 @@ from_option = click.option(
     "origin",
     type=click.Path(path_type=Path, dir_okay=False),
     metavar="OUT.h5",
-    help="Start in the last state in an output: places of rods and bodies.",
+    help="Start in the last state in an output: places of rods and bodies; time starts at 0.",
 )
 case_argument = click.argument("case_path", metavar="CASE.yaml", type=click.Path(path_type=Path))
 output_argument = click.argument("output", metavar="OUT.h5", type=click.Path(path_type=Path))

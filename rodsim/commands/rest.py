@@ -71,9 +71,11 @@ def begin(source, overrides, origin, frame, time, quiet):
     require_scipy()
     if is_output(source):
         if origin is not None:
-            raise UsageError("--from gives a case its shapes; an output has them already")
+            raise UsageError("--from is for a case: an output has its own states, see --frame")
         start = start_from_output(source, overrides, frame)
     else:
+        if origin is None and frame != -1:
+            raise UsageError("--frame is of an output: give one, here or with --from")
         start = start_from_case(load_from(source, overrides, origin, frame))
     start = at_time(start, time)
     say_warnings(start.case, start.scene)

@@ -168,7 +168,9 @@ def _chained(rest, saddle, origin, scheduler):
     from rodsim.errors import UsageError
 
     if not rest and (saddle or origin):
-        raise UsageError(f"{'--saddle' if saddle else '--from'} is for sweeps with --rest")
+        option = "--saddle is for sweeps with --rest"
+        raise UsageError(option if saddle else "--from is for sweeps with --rest; runs begin in a "
+                         "state by `initial` of the case")
     if origin == "previous" and scheduler:
         raise UsageError("--from previous goes one by one, here: leave out --scheduler")
     return origin == "previous"

@@ -72,10 +72,10 @@ def velocity(
     targets, sources, loads = _arrays(targets, sources, forces, torques)
     fluid = _positive(epsilon, "epsilon"), _positive(viscosity, "viscosity")
     _blob(blob)
-    if device not in DEVICES or (device == GPU and accuracy is not None):
-        raise UsageError(
-            f"device must be one of {', '.join(DEVICES)}, and fast sums are for the CPU"
-        )
+    if device not in DEVICES:
+        raise UsageError(f"device must be one of {', '.join(DEVICES)}, not {device!r}")
+    if device == GPU and accuracy is not None:
+        raise UsageError("fast sums are for the CPU: leave out accuracy, or device='gpu'")
     if accuracy is not None:
         out = _fast(targets, sources, loads, fluid, blob, bool(angular), wall, accuracy, rods)
         return out[:3].T.copy(), (out[3:].T.copy() if angular else None)

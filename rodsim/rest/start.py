@@ -6,12 +6,15 @@ import json
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from rodsim.case import Case, case_from_mapping
 from rodsim.case.expressions import ExpressionError, names_in
-from rodsim.compiled.parts import FLOW, FORCE
+from rodsim.compiled.parts import FLOW, FORCE, PLACE
 from rodsim.errors import UsageError
 from rodsim.output import CaseText, open_trajectory
 from rodsim.scene.build import build_scene
+from rodsim.scene.evaluation import Evaluation
 from rodsim.scene.restore import scene_at
 from rodsim.scene.state import Scene
 
@@ -69,12 +72,22 @@ def start_from_case(case: Case) -> Start:
 
 
 def at_time(start: Start, time: float | None) -> Start:
-    """Return a start whose forces are those at one time; UsageError where that is not said."""
+    """Return a start, forces and held ends as at one time; UsageError where that is not said."""
     scene = start.scene
     if any(part.external for part in scene.parts.of(FLOW)):
         raise UsageError("a background flow moves the rods, so they are not at rest without loads")
-    driven = [part.drive for part in scene.parts.of(FORCE) if part.row.driven]
+    driven = [part.drive for part in scene.parts.of(PLACE, FORCE) if part.row.driven]
     if driven and time is None:
         raise UsageError(f"{driven[0]} depends on time: say with --at when it is looked at")
     moment = 0.0 if time is None else time
-    return replace(start, scene=replace(scene, initial=replace(scene.initial, time=moment)))
+    return replace(start, scene=replace(scene, initial=_held_at(scene, moment)))
+
+
+def _held_at(scene, time):
+    """Return the initial state at a time, its held ends where they are then."""
+    state = replace(scene.initial, time=time)
+    if placing := scene.parts.of(PLACE):
+        state = replace(state, position=state.position.copy(), director=state.director.copy())
+        loads = np.zeros((6, scene.nodes))
+        Evaluation(scene, placing).add(state, loads, loads, state.tracer)
+    return state

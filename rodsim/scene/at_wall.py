@@ -19,8 +19,12 @@ def below_wall(case, scene) -> Iterator[Problem]:
         k = int(np.argmin(z[rod.nodes]))
         lowest = z[rod.first + k]
         if lowest <= scene.wall:
-            reason = f"point {k} is at z = {lowest:.6g}: must be above the wall, z = {scene.wall:g}"
-            yield case.source.problem(("rods", rod.name, "shape"), reason)
+            reason = f"is at z = {lowest:.6g}: must be above the wall, z = {scene.wall:g}"
+            if case.initial is None:
+                yield case.source.problem(("rods", rod.name, "shape"), f"point {k} {reason}")
+            else:
+                whose = f"point {k} of rod '{rod.name}'"
+                yield case.source.problem(("initial", "path"), f"{whose} {reason}")
     tracer = scene.initial.tracer[2]
     if (tracer < scene.floor).any():
         reason = f"one is at z = {tracer.min():.6g}, below the wall, z = {scene.wall:g}"

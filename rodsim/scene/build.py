@@ -54,7 +54,8 @@ def build_scene(case, stored=None) -> Scene:
     arrays = {name: dict(kept) for name, kept in found.arrays.items()}
     position, director = add_nodes(case, rods, bodies, position, director, arrays)
     if case.initial is not None and stored is None:
-        position, director = initial_nodes(case, rods, bodies, position, director)
+        position, director, jumps = initial_nodes(case, rods, bodies, position, director)
+        found.warnings += jumps
         if problems := _half_turns(case, rods, director):
             raise CaseError(problems)
     tracer, groups = _tracers(case, rods, position, director)

@@ -12,12 +12,15 @@ from rodsim.forces.places import rod_named
 from rodsim.scene.bodies import stored_nodes
 from rodsim.scene.stored import AGREES, find_file, in_unit
 
+JUMP = 1e-3  # spacings; less is what a shape of another run may round to
+
 
 def initial_nodes(case, rods, bodies, position, director):
     """Return position (3, N) and director (3, 3, N) of all nodes in the state that a case names.
 
     position, director : of all nodes as the case builds them. Ends that are held in space stay
-    there, with ``move`` at t = 0. Raises CaseError and FileError.
+    there, with ``move`` at t = 0; beside the arrays come Problems of those that jump by that.
+    Raises CaseError and FileError.
     """
     from rodsim.output import open_trajectory  # HDF5 is for who begins in an output
 
@@ -28,15 +31,15 @@ def initial_nodes(case, rods, bodies, position, director):
             found = _of_frame(case, run, rods, bodies)
     except FileError as error:
         raise FileError(str(case.source.problem(("initial", "path"), str(error)))) from error
-    _hold_in_space(case, rods, (position, director), found)
-    return tuple(map(np.ascontiguousarray, found))
+    jumps = list(_hold_in_space(case, rods, (position, director), found))
+    return (*map(np.ascontiguousarray, found), jumps)
 
 
 def _of_frame(case, run, rods, bodies):
     """Return the nodes of a frame, in the order of the case's."""
     frame = case.initial.frame
     if not -run.frames <= frame < run.frames:
-        raise FileError(f"{run.path}: frame {frame} of {run.frames} does not exist")
+        _refuse(case, f"has frames 0 to {run.frames - 1}", "frame")
     if run.status == "diverged":
         raise FileError(f"{run.path}: its run diverged: start from another run")
     factor, errors, _ = in_unit(run.units["length"], case.units.length)
@@ -64,7 +67,7 @@ def _refuse_others(case, run, rods, factor):
         else:
             reason = _differs(rod, theirs[rod.name], factor)
         if reason:
-            _refuse(case, reason)
+            _refuse(case, f"{reason}: the shapes must be those of the output")
     for name in case.bodies or {}:
         if name not in run.bodies:
             _refuse(case, f"has no body '{name}'")
@@ -84,16 +87,24 @@ def _differs(rod, theirs, factor):
     return ""
 
 
-def _refuse(case, reason):
-    raise CaseError([case.source.problem(("initial", "path"), reason)])
+def _refuse(case, reason, key="path"):
+    raise CaseError([case.source.problem(("initial", key), reason)])
 
 
 def _hold_in_space(case, rods, built, found):
-    """Put ends that are held in space where the case holds them."""
+    """Put ends that are held in space where the case holds them; yield Problems of the jumps."""
     for name, which, end in held_ends(case):
         if end.to != "space":
             continue
-        node = end_node(rod_named(rods, name), which)
+        rod = rod_named(rods, name)
+        node = end_node(rod, which)
+        jump = float(np.linalg.norm(found[0][:, node] - built[0][:, node]))
+        if jump > JUMP * rod.spacing:
+            reason = (
+                f"is held {jump:.3g} {case.units.length} from where the output has it: move counts "
+                "from the shape, and time starts at 0"
+            )
+            yield case.source.problem(("rods", name, which), reason)
         found[0][:, node] = built[0][:, node]
         if end.hold == "clamped" and end.motor is None and end.hook is None:
             found[1][:, :, node] = built[1][:, :, node]

@@ -8,8 +8,10 @@ import pytest
 pytest.importorskip("scipy")
 
 from rodsim.case import case_from_mapping
+from rodsim.errors import UsageError
 from rodsim.forces.near import repulsion_stiffness
 from rodsim.rest.solve import find_rest
+from rodsim.rest.start import at_time, start_from_case
 from rodsim.scene.build import build_scene
 from rodsim.scene.evaluation import loads_of
 from rodsim.scene.state import State
@@ -67,3 +69,24 @@ def test_stiffness_of_contact_is_that_of_its_loads():
         step[c, k] = 1e-6
         slope = -(loads(X + step) - loads(X - step)) / 2e-6
         np.testing.assert_allclose(found[:, :, k, c].T, slope, atol=1e-7)
+
+
+def test_held_ends_are_where_they_are_at_the_time_that_is_looked_at():
+    """Here a clamp moves: at rest at a time it is there, and what moves asks for a time."""
+    rod = {
+        "shape": {"kind": "straight", "points": 9, "length": 2.3},
+        "moduli": MODULI,
+        "start": {"hold": "clamped", "move": {"displace": [0.0, "0.3*t", 0.0]}},
+        "end": {"hold": "clamped", "move": {"turn": ["0.2*t", 0.0, 0.0]}},
+    }
+    case = case_from_mapping({
+        "fluid": {"viscosity": 0.3, "epsilon": 0.6}, "rods": {"beam": rod}, "time": {"end": 5.0},
+    })  # fmt: skip
+    with pytest.raises(UsageError, match="depends on time: say with --at"):
+        at_time(start_from_case(case), None)
+    built = build_scene(case).initial
+    found = at_time(start_from_case(case), 2.0).scene.initial
+    assert found.position[:, 0] == pytest.approx(built.position[:, 0] + [0.0, 0.6, 0.0], abs=1e-15)
+    # D3 turns from z by the angle 0.4 about x, towards -y
+    assert found.director[2, :, -1] == pytest.approx([0, -np.sin(0.4), np.cos(0.4)], abs=1e-14)
+    assert np.array_equal(found.position[:, 1:-1], built.position[:, 1:-1])

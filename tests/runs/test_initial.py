@@ -125,6 +125,20 @@ def test_an_end_that_is_held_elsewhere_begins_there(bent):
     assert there.position[:, -1] == pytest.approx(here.position[:, -1] - [0, 0, 0.02], abs=1e-15)
     with open_trajectory(bent) as run:
         assert np.array_equal(there.position.T[:-1], run.position[-1, :-1])
+    told = " ".join(str(problem) for problem in build_scene(load_case(case)).warnings)
+    assert "rods.beam.end" in told
+    assert "is held 0.02 um from where the output has it" in told
+    same = build_scene(load_case(changed(BEAM, initial={"path": str(bent)})))
+    assert "from where the output has it" not in " ".join(map(str, same.warnings))
+
+
+def test_a_state_below_the_wall_is_one_of_the_output(bent):
+    case = changed(BEAM, initial={"path": str(bent)})
+    case["rods"]["beam"]["shape"]["origin"] = [0, 0, 1.2]
+    case["fluid"] = FLUID | {"wall": {"z": 0.3}}
+    case["rods"]["beam"] |= {"start": {"hold": "free"}, "end": {"hold": "free"}}
+    with pytest.raises(CaseError, match=r"initial.path.*of rod 'beam' is at z = .* above the wall"):
+        build_scene(load_case(case))
 
 
 def test_it_resumes_with_the_same_bits_when_the_earlier_run_is_gone(bent, tmp_path):
@@ -164,7 +178,7 @@ def test_lengths_are_converted(bent):
     [
         ({"rods.beam.shape.points": 10}, "rod 'beam' has 9 points there, not 10"),
         ({"rods.beam.shape.spacing": 0.2}, "rod 'beam' has a spacing of 0.21 there, not 0.2"),
-        ({"initial.frame": 4}, "frame 4 of 4 does not exist"),
+        ({"initial.frame": 4}, r"initial\.frame = 4: has frames 0 to 3"),
         ({"initial.path": "gone.h5"}, "no such file"),
         ({"initial.frame": 1.5}, "initial.frame"),
     ],
