@@ -100,7 +100,8 @@ def run_summary(summary, output) -> str:
     lines = []
     if summary.moved:
         lines.append(f"the earlier {output} is now {summary.moved}")
-    lines.append(f"{summary.status}: {summary.frames} frame{"s" * (summary.frames != 1)} in {output}")
+    frames = f"{summary.frames} frame{'s' * (summary.frames != 1)}"
+    lines.append(f"{summary.status}: {frames} in {output}")
     lines.append(
         f"{cost['evaluations']} evaluations, {cost['steps_accepted']} steps accepted, "
         f"{cost['steps_rejected']} rejected, up to {cost['max_stages']} stages"
