@@ -1,4 +1,6 @@
-"""Text from files, made fit for a terminal."""
+"""Text from files: made fit for a terminal, found in plain data."""
+
+from collections.abc import Iterator
 
 
 def printable(text: str) -> str:
@@ -13,3 +15,12 @@ def printable(text: str) -> str:
 
 def _escaped(character: str) -> str:
     return character.encode("unicode_escape").decode()
+
+
+def texts_in(node) -> Iterator[str]:
+    """Yield all texts in nested plain data but the keys."""
+    if isinstance(node, str):
+        yield node
+    elif isinstance(node, dict | list):
+        for item in node.values() if isinstance(node, dict) else node:
+            yield from texts_in(item)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -139,6 +140,11 @@ class Case(Model):
         if self.time.method.adaptive or self.time.step is None:
             return share
         return max(1.0, float(np.ceil(share / self.time.step * (1.0 - 1e-9)))) * self.time.step
+
+    @property
+    def folder(self) -> Path:
+        """Where the names of files in it begin: beside the case file, or the current folder."""
+        return Path(self.source.path).parent if self.source and self.source.path else Path()
 
     @property
     def files(self) -> list[str]:

@@ -7,11 +7,11 @@ a case take longer to load than all else here; only a run with contact or a driv
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 
 from rodsim.case.methods import METHODS
 from rodsim.errors import FileError
 from rodsim.scene.neighbours import hydrodynamic_diameter
+from rodsim.text import texts_in
 from rodsim.units import VISCOSITY, in_water_units, unit_text
 
 MOST_RODS = 50  # described one by one
@@ -65,21 +65,12 @@ def diameter_of(run, case: dict) -> float:
 def is_driven(run, case: dict) -> bool:
     """Tell whether anything in the case of a stored run depends on time."""
     kept = {key: item for key, item in case.items() if key not in ("title", "units")}
-    if not any(map(_TIME.search, _texts(kept))):
+    if not any(map(_TIME.search, texts_in(kept))):
         return False
     from rodsim.case.resolved import is_driven
     from rodsim.scene.restore import restore_case
 
     return is_driven(restore_case(run))  # it may be the name of a rod
-
-
-def _texts(node) -> Iterator[str]:
-    """Yield all texts in plain data but the keys."""
-    if isinstance(node, str):
-        yield node
-    elif isinstance(node, dict | list):
-        for item in node.values() if isinstance(node, dict) else node:
-            yield from _texts(item)
 
 
 def _rods(run, moduli):

@@ -17,6 +17,7 @@ from rodsim.scene.build import build_scene
 from rodsim.scene.evaluation import Evaluation
 from rodsim.scene.restore import scene_at
 from rodsim.scene.state import Scene
+from rodsim.text import texts_in
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,7 @@ def _refuse_idle(data, overrides):
     What is a number in a case is worked out when the case is read, and stored as that.
     """
     used = set()
-    for text in _texts({key: item for key, item in data.items() if key != "parameters"}):
+    for text in texts_in({key: item for key, item in data.items() if key != "parameters"}):
         with suppress(ExpressionError):
             used |= names_in(text)
     for text in overrides:
@@ -55,15 +56,6 @@ def _refuse_idle(data, overrides):
                 f"--set {text}: changes nothing, for the numbers in an output are worked out "
                 "already: set what uses it, such as rods.NAME.strain_twist"
             )
-
-
-def _texts(node):
-    """Yield all texts in nested data."""
-    if isinstance(node, str):
-        yield node
-    elif isinstance(node, dict | list):
-        for item in node.values() if isinstance(node, dict) else node:
-            yield from _texts(item)
 
 
 def start_from_case(case: Case) -> Start:

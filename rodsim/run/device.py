@@ -5,7 +5,7 @@ from __future__ import annotations
 from rodsim.compiled.constants import CPU, GPU
 from rodsim.errors import UsageError
 from rodsim.output.writer import short
-from rodsim.scene.device import on_device
+from rodsim.scene.device import machine_of, on_device
 
 HOW = "go on with --device cpu; last digits can then differ from those of one run"
 
@@ -36,6 +36,4 @@ def case_to_go_on(case, run, asked: str | None):
 
 def name_of(case) -> str:
     """Return what the file of a run calls the device of a case."""
-    from rodsim.scene.device import machine_of
-
     return short(machine_of(case).get("device", CPU)).decode()

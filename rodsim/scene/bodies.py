@@ -7,7 +7,6 @@ motor that winds up a hook.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -67,7 +66,7 @@ def build_bodies(case, points: int, blob: str, stored=None) -> tuple[Body, ...]:
 
     ``stored``: an earlier run, which knows the points of surfaces from files.
     """
-    folder = Path(case.source.path).parent if case.source and case.source.path else Path()
+    folder = case.folder
     found = []
     for index, (name, body) in enumerate((case.bodies or {}).items()):
         try:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 
 from rodsim.blocks.ends import end_node, held_ends
@@ -24,7 +22,7 @@ def initial_nodes(case, rods, bodies, position, director):
     """
     from rodsim.output import open_trajectory  # HDF5 is for who begins in an output
 
-    folder = Path(case.source.path).parent if case.source and case.source.path else Path()
+    folder = case.folder
     try:
         path = find_file(case.initial.path, folder)
         with open_trajectory(path) as run:

@@ -35,7 +35,7 @@ def digests(data: dict, folder, known: dict | None = None) -> dict[str, dict[str
 
 def case_digests(case) -> dict[str, dict[str, str]]:
     """Return the digests of a case as loaded; empty where it names no file."""
-    folder = Path(case.source.path).parent if case.source and case.source.path else Path()
+    folder = case.folder
     return digests(case.resolved(), folder)
 
 

@@ -1,7 +1,6 @@
 """The rods of a case, one by one: built or read, placed, and held against what the case says."""
 
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 
 import numpy as np
 
@@ -69,7 +68,7 @@ def _build(case, name, rod, stored):
     if before is not None:
         return Built(*before)
     if shape.kind in READERS:
-        folder = Path(case.source.path).parent if case.source and case.source.path else Path()
+        folder = case.folder
         try:
             with np.errstate(all="ignore"):  # what is too large is refused below
                 built = READERS[shape.kind](shape, folder, case.units.length)
@@ -98,7 +97,7 @@ def _disturb(case, name, how, built):
 
 def _bind(case, name, rod, built, stored, found):
     """Bind the rod's strain twist, and check what the case alone could not tell."""
-    folder = Path(case.source.path).parent if case.source and case.source.path else Path()
+    folder = case.folder
     kept = None if stored is None else stored.arrays(name)
     try:
         entries, arrays = bind(rod, built, folder, kept)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 from rodsim.case.words import did_you_mean
 from rodsim.case.yaml_text import parse
 from rodsim.errors import UsageError
 from rodsim.files import shipped
+from rodsim.text import texts_in
 
 TEMPLATES = ("open", "ring", "flagellum")  # the paper's three scenes, shortened
 EDITOR_LINE = "# yaml-language-server:"  # names a schema that lies beside the configs alone
@@ -44,7 +43,7 @@ def tables_of(name: str) -> list[Path]:
     if path.suffix == ".csv":
         return []
     beside = {p.name: p for p in path.parent.iterdir() if p.suffix != ".py"}
-    texts = dict.fromkeys(_texts(parse(template(name), str)[0]))
+    texts = dict.fromkeys(texts_in(parse(template(name), str)[0]))
     return [beside[text] for text in texts if text in beside]
 
 
@@ -54,11 +53,3 @@ def _path(name: str) -> Path:
         hint = did_you_mean(name, known) or ": rodsim new lists them"
         raise UsageError(f"no case called '{name}'{hint}")
     return known[name]
-
-
-def _texts(data: Any) -> Iterator[str]:
-    if isinstance(data, dict | list):
-        for item in data.values() if isinstance(data, dict) else data:
-            yield from _texts(item)
-    elif isinstance(data, str):
-        yield data
