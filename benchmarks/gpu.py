@@ -99,7 +99,7 @@ def add(one, targets, sources, loads, rows=6):
 
 def print_error(kind, blob, m):
     """Print and return the largest error of a sum over its largest value; bits must not vary."""
-    from rodsim.flows import free, wall
+    from rodsim.flows.by_threads import velocity_kernel
     from rodsim.flows.card import sums
 
     targets, sources, loads = scene(m, kind)
@@ -108,12 +108,9 @@ def print_error(kind, blob, m):
     found = add(one, targets, sources, loads, rows)
     same = all(np.array_equal(found, add(one, targets, sources, loads, rows)) for _ in range(3))
     some = np.linspace(0, m - 1, min(m, SAMPLES)).astype(int)
-    home, height = (wall, (WALL,)) if "wall" in kind else (free, ())
-    kernel = home.velocity_kernel(blob, "planar" in kind, rows == 6)
-    exact = np.zeros((rows, some.size))
-    kernel(
-        np.ascontiguousarray(targets[:, some]), sources, loads, EPSILON, VISCOSITY, *height, exact
-    )
+    kernel = velocity_kernel(blob, "planar" in kind, rows == 6, "wall" in kind)
+    exact, sample = np.zeros((rows, some.size)), np.ascontiguousarray(targets[:, some])
+    kernel(sample, sources, loads, EPSILON, VISCOSITY, WALL, exact)
     parts = [slice(0, 3), slice(3, 6)][: rows // 3]
     errors = [abs(found[p][:, some] - exact[p]).max() / abs(exact[p]).max() for p in parts]
     print(
@@ -145,7 +142,7 @@ def seconds_of(kind, m):
 
     @kernel
     def by_address(address, targets, sources, loads, out):
-        call_sum(address, targets, sources, loads, EPSILON, VISCOSITY, WALL, out)
+        call_sum(address, 0, targets, sources, loads, EPSILON, VISCOSITY, WALL, out)
 
     one, arrays = getattr(sums, f"{kind}_7"), scene(m, kind)
     out = np.zeros((3 if "flow" in kind else 6, m))

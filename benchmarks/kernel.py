@@ -14,7 +14,8 @@ from tables import Spread, Table
 
 SIZES = (50, 76, 100, 200, 400, 600, 1000, 2000)
 QUICK_SIZES = (50, 200, 600)
-VARIANTS = {  # planar, angular: arguments of rodsim.flows.velocity.velocity_kernel
+WALL = -3.0
+VARIANTS = {  # planar, angular: arguments of rodsim.flows.by_threads.velocity_kernel
     "spatial": (False, True),
     "no_w": (False, False),
     "planar": (True, True),
@@ -76,21 +77,20 @@ def call(blob, size, threads, variant):
     """Return a function that evaluates one sum over ``size`` points of a ring."""
     import numba
 
-    from rodsim.flows import free, wall
     from rodsim.flows.blobs import BLOBS
+    from rodsim.flows.by_threads import velocity_kernel
 
-    sums, height = (wall, (-3.0,)) if variant.startswith("wall_") else (free, ())
     planar, angular = VARIANTS[variant.removeprefix("wall_")]
     angle = np.arange(size) * (2.0 * np.pi / size)
     points = 2.5 * np.stack([0.0 * angle, np.cos(angle), np.sin(angle)])
     loads = np.random.default_rng(1).standard_normal((6, size))
     epsilon = 4.0 * 2.5 * 2.0 * np.pi / size
-    kernel = sums.velocity_kernel(BLOBS[blob], planar, angular)
+    kernel = velocity_kernel(BLOBS[blob], planar, angular, variant.startswith("wall_"))
     out = np.zeros((6 if angular else 3, size))
 
     def evaluate():
         numba.set_num_threads(threads)
-        kernel(points, points, loads, epsilon, 1e-6, *height, out)
+        kernel(points, points, loads, epsilon, 1e-6, WALL, out)
 
     return evaluate
 

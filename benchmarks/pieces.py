@@ -21,7 +21,7 @@ def sum_of(scene, threads, targets=None):
 
     def evaluate():
         numba.set_num_threads(threads)
-        kernel(some, position, loads, scene.epsilon, scene.viscosity, out)
+        kernel(some, position, loads, scene.epsilon, scene.viscosity, 0.0, out)
 
     return evaluate
 

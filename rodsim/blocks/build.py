@@ -25,7 +25,7 @@ from rodsim.case.fields import Name, not_empty
 from rodsim.compiled.parts import FORCE, HOLD, PLACE, RELEASE, TRACERS, Part
 from rodsim.compiled.row import Entry, Row
 from rodsim.errors import CaseError
-from rodsim.flows.fluid import pair_sums
+from rodsim.flows.fluid import pair_sum
 from rodsim.forces.places import rod_named
 from rodsim.registry import Kind
 
@@ -172,8 +172,8 @@ def _build(case, scene) -> list[Part]:
              statics=statics_of(blocks, scene, shared)),
         Part("held", RELEASE, "rodsim.blocks.hold:release", **shared),
         Part("held", HOLD, "rodsim.blocks.hold:hold", **shared, external=report.driven,
-             sums=pair_sums(scene), gauges=report.gauges, report=report,
-             series=report.series, labels=report.labels),
+             sums=pair_sum(scene, "spatial") + pair_sum(scene, "flow"), gauges=report.gauges,
+             report=report, series=report.series, labels=report.labels),
     ]  # fmt: skip
     if scene.bodies:
         parts.append(

@@ -5,10 +5,10 @@ points that they name by their first place; then room for what one evaluation le
 part, "left"; and at the end the gauges. Offsets count from the start of ``fixed``.
 """
 
-# head; first the addresses of two sums: of u and w, and of u alone
-(SUM, SUM_U, BLOCKS, MEMBERS, VISCOSITY, EPSILON, WALL, COUPLED, FLOW, FLOW_END, SIZE, COLUMNS,
- MEMBER_LEFT, BLOCK_LEFT, VECTORS, GAUGES, HELD, MOTOR_COUNT) = range(18)  # fmt: skip
-HEAD = 18
+# head; first the addresses of two sums, each with its runs: of u and w, and of u alone
+(SUM, RUN, SUM_U, RUN_U, BLOCKS, MEMBERS, VISCOSITY, EPSILON, WALL, COUPLED, FLOW, FLOW_END, SIZE,
+ COLUMNS, MEMBER_LEFT, BLOCK_LEFT, VECTORS, GAUGES, HELD, MOTOR_COUNT) = range(20)  # fmt: skip
+HEAD = 20
 
 # of a block: its node (-1: none), members, surface points and blobs, matrices, given motion
 (NODE, FIRST, COUNT, SURFACE, POINTS, BLOB, ROD_BLOB, COLS, FREE, P, G, INVERSE, MOTION, VECTOR,

@@ -52,7 +52,7 @@ def mobility(points, members, blob, epsilons, viscosity) -> np.ndarray:
 def _columns(groups, source, blob, viscosity):
     """Return the velocities (components, size of A) by a unit load in each component."""
     from rodsim.flows.blobs import BLOBS
-    from rodsim.flows.free import velocity_kernel
+    from rodsim.flows.by_threads import velocity_kernel
 
     points, components, epsilon = source
     columns = np.zeros((points.shape[1] * components, sum(g[0].shape[1] * g[1] for g in groups)))
@@ -66,7 +66,7 @@ def _columns(groups, source, blob, viscosity):
                 if end > begin:
                     kernel = velocity_kernel(BLOBS[blob], angular=size == 6)
                     out = np.zeros((size, targets.shape[1]))
-                    kernel(targets, place, load, pair_epsilon(epsilon, own), viscosity, out)
+                    kernel(targets, place, load, pair_epsilon(epsilon, own), viscosity, 0.0, out)
                     line[begin:end] = out.T.ravel()
                 begin = end
     return columns

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import NamedTuple
 
 import numpy as np
@@ -53,13 +52,12 @@ def with_loads(left: np.ndarray, *terms: tuple[float, np.ndarray]) -> np.ndarray
 def surface_pressure(scene, points: np.ndarray, left: np.ndarray) -> np.ndarray:
     """Return the pressure (T,) of all surfaces at points (3, T): eq. (62) of their own blobs."""
     from rodsim.flows.blobs import BLOBS
+    from rodsim.flows.by_threads import pressure_kernel
 
-    home = "rodsim.flows.free" if scene.wall is None else "rodsim.flows.wall"
-    height = () if scene.wall is None else (scene.wall,)
-    kernel = import_module(home).pressure_kernel(BLOBS[scene.blob])
+    kernel = pressure_kernel(BLOBS[scene.blob], scene.wall is not None)
     total = np.zeros(points.shape[1])
     for skin in skins(left):
         share = np.zeros_like(total)
-        kernel(points, skin.points, skin.loads, skin.epsilon, *height, share)
+        kernel(points, skin.points, skin.loads, skin.epsilon, scene.wall or 0.0, share)
         total += share
     return total

@@ -180,16 +180,18 @@ def member_places(fixed, position):
 def add_all(fixed, targets, sources, loads, epsilon, out):
     """Add u and w (6, T) at targets (3, T) by loads (6, n) at sources (3, n)."""
     if targets.shape[1] and sources.shape[1]:
-        address, viscosity, wall = int(fixed[f.SUM]), fixed[f.VISCOSITY], fixed[f.WALL]
-        call_sum(address, targets, sources, loads, epsilon, viscosity, wall, out)
+        viscosity, wall = fixed[f.VISCOSITY], fixed[f.WALL]
+        address, run = int(fixed[f.SUM]), int(fixed[f.RUN])
+        call_sum(address, run, targets, sources, loads, epsilon, viscosity, wall, out)
 
 
 @unsigned
 def add_u(fixed, targets, sources, loads, epsilon, out):
     """Add u (3, T) alone."""
     if targets.shape[1] and sources.shape[1]:
-        address, viscosity, wall = int(fixed[f.SUM_U]), fixed[f.VISCOSITY], fixed[f.WALL]
-        call_sum(address, targets, sources, loads, epsilon, viscosity, wall, out)
+        viscosity, wall = fixed[f.VISCOSITY], fixed[f.WALL]
+        address, run = int(fixed[f.SUM_U]), int(fixed[f.RUN_U])
+        call_sum(address, run, targets, sources, loads, epsilon, viscosity, wall, out)
 
 
 @unsigned

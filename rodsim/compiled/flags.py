@@ -13,6 +13,7 @@ wrap-around of negative indices to each access, and LLVM then gives up vectorisi
 
 from functools import partial
 
+import numba
 import numpy as np
 from llvmlite import ir
 from numba import types
@@ -35,7 +36,8 @@ BOOLS = "boolean[::1]"
 RODS = f"Tuple(({INTS}, {INTS}, {BOOLS}, {VEC}, {MAT}))"  # nodes.Rods.tables
 STATE = f"Tuple(({MAT}, {TRIADS}, {MAT}))"  # position, director, tracer
 PART = f"void({VEC}, {VEC}, {RODS}, {STATE}, {MAT}, UniTuple({MAT}, 2))"  # compiled.kernels
-SUM = f"void({MAT}, {MAT}, {MAT}, float64, float64, float64, {MAT})"  # compiled.kernels
+SUM = f"void(int64, {MAT}, {MAT}, {MAT}, float64, float64, float64, {MAT})"  # compiled.kernels
+RUN = SUM.replace("int64", "int64, int64")  # of targets, flows.by_threads
 WORK = f"Tuple(({STATE}, {MAT}, {TRIADS}))"  # a state, loads, loads or velocities of each account
 EVALUATION = f"void({INT_MAT}, {VEC}, {VEC}, {RODS}, {STATE}, {WORK}, {VEC}, {VEC})"  # scene.loop
 ONE = np.uint64(1)
@@ -60,9 +62,9 @@ within = partial(kernel, no_cpython_wrapper=True)  # the same, and never called 
 inline = partial(cached_njit, error_model="numpy", inline="always")
 
 
-def compile_part(function, signature):
+def compile_part(function, signature, **options):
     """Compile a part or a sum, or read it from the cache."""
-    return cached_cfunc(function, signature, error_model="numpy")
+    return cached_cfunc(function, signature, error_model="numpy", **options)
 
 
 def _jump(context, builder, signature, arguments):
@@ -82,10 +84,17 @@ def _call_at(typing, address, row, fixed, rods, state, loads, velocities):
 
 
 @intrinsic
-def _sum_at(typing, address, targets, sources, loads, epsilon, viscosity, wall, out):
+def _sum_at(typing, address, run, targets, sources, loads, epsilon, viscosity, wall, out):
     """Call the sum whose machine code lies at an address."""
-    arguments = (targets, sources, loads, epsilon, viscosity, wall, out)
+    arguments = (run, targets, sources, loads, epsilon, viscosity, wall, out)
     return types.void(types.int64, *arguments), _jump
+
+
+@intrinsic
+def _run_at(typing, address, begin, end, targets, sources, loads, epsilon, viscosity, wall, out):
+    """Call a sum for a run of targets."""
+    arguments = (targets, sources, loads, epsilon, viscosity, wall, out)
+    return types.void(types.int64, types.int64, types.int64, *arguments), _jump
 
 
 @intrinsic
@@ -96,5 +105,12 @@ def _evaluation_at(typing, address, table, numbers, driven, rods, base, work, y,
 
 
 call_evaluation = interpreted if jit_is_off() else _evaluation_at
+# Numba's own is not kept in its cache: it holds the address that the function has now.
+thread_count = (
+    numba.get_num_threads
+    if jit_is_off()
+    else types.ExternalFunction("get_num_threads", types.int32())
+)
 call_sum = interpreted if jit_is_off() else _sum_at
+call_run = interpreted if jit_is_off() else _run_at
 call_part = interpreted if jit_is_off() else _call_at

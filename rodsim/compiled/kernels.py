@@ -15,9 +15,10 @@ not depend on the number of threads.
 
 A *sum* is a function of another signature, the velocities at targets by point loads at sources:
 
-    sum(targets, sources, loads, epsilon, viscosity, wall, out)
+    sum(run, targets, sources, loads, epsilon, viscosity, wall, out)
 
-Parts that need sums call them by address too, so that they are compiled once for every fluid; and
+Parts call it by its address too, so that they are compiled once for every fluid. It shares out the
+targets, to threads that call ``run`` (:mod:`rodsim.flows.by_threads`) or to those of a card. And
 all that needs velocities at increments calls the one *evaluation* of :mod:`rodsim.scene.loop`.
 
 The loop is compiled once for all scenes, and a part once for all: a scene compiles or loads just
@@ -43,7 +44,7 @@ class Kernel:
     """The function of a part or a sum, compiled when its address is first asked for."""
 
     def __init__(self, function, signature="PART"):
-        self.function, self.signature = function, signature
+        self.function, self.signature = function, signature  # its name in ``flags``
         self.__doc__ = function.__doc__
 
     def __call__(self, *arguments):
@@ -67,11 +68,13 @@ class Kernel:
     def _compiled(self):
         from rodsim.compiled import flags
 
-        return flags.compile_part(self.function, getattr(flags, self.signature))
+        options = {"fastmath": flags.SUM_FLAGS} if self.signature == "RUN" else {}
+        return flags.compile_part(self.function, getattr(flags, self.signature), **options)
 
 
 part = Kernel  # as a decorator
 pair_sum = partial(Kernel, signature="SUM")
+run_of_sum = partial(Kernel, signature="RUN")
 evaluation = partial(Kernel, signature="EVALUATION")
 
 

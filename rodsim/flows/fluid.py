@@ -6,8 +6,6 @@ or below it makes all velocities NaN: a step that gets there is rejected.
 
 from __future__ import annotations
 
-from importlib import import_module
-
 import numpy as np
 
 from rodsim.case.fields import Model, Number, quantity
@@ -26,46 +24,47 @@ class Wall(Model):
 
 def fluid_parts(scene) -> list[Part]:
     """Return the sums (32), (33) over the rods of a scene, and those at tracers."""
-    home, kind = _home(scene), "planar" if scene.planar else "spatial"
-    pressure = pressure_of(scene, home)
-    if scene.device == GPU:
-        from rodsim.flows.card.sums import parts_on_card
-
-        return parts_on_card(scene, kind, pressure)
-    fixed = np.array(
-        [scene.epsilon, scene.viscosity, *([] if scene.wall is None else [scene.wall])]
-    )
-    blob = scene.blob.removeprefix("algebraic")
+    rods, tracers = "planar" if scene.planar else "spatial", "flow"
     return [
-        Part("fluid", FLOW, f"{home}:{kind}_{blob}", fixed=fixed),
-        Part("fluid", TRACERS, f"{home}:tracers_{blob}", fixed=fixed, pressure=pressure),
+        _part(scene, FLOW, "move_rods", rods),
+        _part(scene, TRACERS, "move_tracers", tracers, pressure=pressure_of(scene)),
     ]
 
 
-def pair_sums(scene) -> tuple[str, str]:
-    """Return where the sums are that parts call by address: of u and w, of u alone."""
-    blob = scene.blob.removeprefix("algebraic")
+def _part(scene, side, kernel, which, **more):
     if scene.device == GPU:
-        at = "" if scene.wall is None else "wall_"
-        return tuple(f"{CARD}:{at}{which}_{blob}" for which in ("spatial", "flow"))
-    return tuple(f"{_home(scene)}:{which}_{blob}" for which in ("sum", "sum_u"))
+        from rodsim.flows.card.sums import failed
+
+        more["failed"] = failed
+    height = -np.inf if scene.wall is None else scene.wall
+    fixed = np.array([0.0, 0.0, scene.epsilon, scene.viscosity, height])
+    sums = pair_sum(scene, which)
+    return Part("fluid", side, f"rodsim.flows.parts:{kernel}", fixed=fixed, sums=sums, **more)
 
 
-def _home(scene):
-    return f"rodsim.flows.{'free' if scene.wall is None else 'wall'}"
+def pair_sum(scene, which: str) -> tuple[str, str]:
+    """Return where a sum is and its runs of targets, whose addresses parts call it by.
+
+    which : "spatial" and "planar" of u and w at rods, "flow" of u alone.
+    """
+    blob = scene.blob.removeprefix("algebraic")
+    if scene.device == GPU:  # which has no use for the second
+        return (f"{CARD}:{'' if scene.wall is None else 'wall_'}{which}_{blob}",) * 2
+    home = "free" if scene.wall is None else "wall"
+    return "rodsim.flows.by_threads:share_out", f"rodsim.flows.{home}:{which}_{blob}"
 
 
-def pressure_of(scene, home):
+def pressure_of(scene):
     """Return what a part of the fluid has as its ``pressure``."""
 
     def pressure(points, sources, loads, t, left):
         """Return the pressure (T,) at points (3, T), eq. (62); NaN below a wall."""
         from rodsim.flows.blobs import BLOBS
+        from rodsim.flows.by_threads import pressure_kernel
 
-        height = () if scene.wall is None else (scene.wall,)
-        out = np.zeros(points.shape[1])
-        kernel = import_module(home).pressure_kernel(BLOBS[scene.blob])
-        kernel(points, sources, loads, scene.epsilon, *height, out)
+        at_wall, out = scene.wall is not None, np.zeros(points.shape[1])
+        kernel = pressure_kernel(BLOBS[scene.blob], at_wall)
+        kernel(points, sources, loads, scene.epsilon, scene.wall or 0.0, out)
         out[points[2] < scene.floor] = np.nan
         return out
 

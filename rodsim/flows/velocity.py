@@ -13,9 +13,8 @@ import numpy as np
 from rodsim.compiled.constants import DEVICES, GPU
 from rodsim.compiled.threads import computing
 from rodsim.errors import UsageError
-from rodsim.flows import free
 from rodsim.flows.blobs import BLOBS
-from rodsim.flows.free import pressure_kernel, velocity_kernel
+from rodsim.flows.by_threads import pressure_kernel, velocity_kernel
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -81,17 +80,17 @@ def velocity(
         return out[:3].T.copy(), (out[3:].T.copy() if angular else None)
     if rods is not None:
         raise UsageError("rods is for the fast sums: give accuracy too")
-    sums, height = _sums(wall, sources)
+    height = _height(wall, sources)
     out = np.zeros((6 if angular else 3, targets.shape[1]))
     if device == GPU:
         from rodsim.flows.card.device import add_on_card
 
         choice = wall is not None, blob, bool(angular)
-        add_on_card(*choice, targets, sources, loads, *fluid, *(height or (0.0,)), out)
+        add_on_card(*choice, targets, sources, loads, *fluid, height, out)
     else:
-        kernel = sums.velocity_kernel(_blob(blob), False, bool(angular))
+        kernel = velocity_kernel(_blob(blob), False, bool(angular), wall is not None)
         with computing():
-            kernel(targets, sources, loads, *fluid, *height, out)
+            kernel(targets, sources, loads, *fluid, height, out)
     out[:, _below(targets, wall)] = np.nan
     return out[:3].T.copy(), (out[3:].T.copy() if angular else None)
 
@@ -117,11 +116,12 @@ def pressure(
         )
     torques = np.zeros_like(forces, dtype=float) if torques is None else torques
     targets, sources, loads = _arrays(targets, sources, forces, torques)
-    sums, height = _sums(wall, sources)
+    height = _height(wall, sources)
     out = np.zeros(targets.shape[1])
-    kernel, epsilon = sums.pressure_kernel(_blob(blob)), _positive(epsilon, "epsilon")
+    kernel = pressure_kernel(_blob(blob), wall is not None)
+    epsilon = _positive(epsilon, "epsilon")
     with computing():
-        kernel(targets, sources, loads, epsilon, *height, out)
+        kernel(targets, sources, loads, epsilon, height, out)
     out[_below(targets, wall)] = np.nan
     return out
 
@@ -138,8 +138,7 @@ def _fast(targets, sources, loads, fluid, blob, angular, wall, accuracy, rods):
     from rodsim.flows.fast.plan import GroupSum, rod_sum
 
     own = angular and np.array_equal(targets, sources)
-    _, height = _sums(wall, sources)
-    wall = height[0] if height else None
+    _height(wall, sources)
     out = np.zeros((6 if angular else 3, targets.shape[1]))
     with computing():
         if own:
@@ -158,12 +157,10 @@ def _fast(targets, sources, loads, fluid, blob, angular, wall, accuracy, rods):
     return out
 
 
-def _sums(wall, sources):
-    """Return the module of the sums, and the height that those at a wall take."""
+def _height(wall, sources):
+    """Return the height of a wall below all sources; where there is none it is not used."""
     if wall is None:
-        return free, ()
-    from rodsim.flows import wall as at_wall
-
+        return 0.0
     height = float(wall)
     if not np.isfinite(height):
         raise UsageError(f"wall must be a height z or None, not {wall}")
@@ -173,7 +170,7 @@ def _sums(wall, sources):
         raise UsageError(
             f"source {low[0]} is at z = {z:g}: sources must be above the wall z = {height:g}"
         )
-    return at_wall, (height,)
+    return height
 
 
 def _below(targets, wall):

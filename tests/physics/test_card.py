@@ -6,7 +6,7 @@ from card import simulated
 
 from rodsim.compiled.flags import MAT, call_sum, kernel
 from rodsim.compiled.kernels import jit_is_off
-from rodsim.flows import free, wall
+from rodsim.flows.by_threads import velocity_kernel
 
 pytest.importorskip("numba.cuda", reason="this Numba has no CUDA: pip install numba-cuda")
 EPSILON, VISCOSITY, WALL = 0.37, 0.73, -0.41
@@ -25,7 +25,7 @@ for name in {name.rpartition(".")[0] for name in given} - {"fluid"}:
         arrays[0] = arrays[1]  # once, as the points of rods are
     for again in ("", "again "):
         found[again + name] = given[f"{name}.out"].copy()
-        getattr(sums, kind)(*arrays, *given["fluid.numbers"], found[again + name])
+        getattr(sums, kind)(0, *arrays, *given["fluid.numbers"], found[again + name])
     sums.failed()
 np.savez("found.npz", **found)
 """
@@ -62,12 +62,11 @@ def found(tmp_path_factory):
 @pytest.mark.parametrize("kind", KINDS)
 def test_sums_on_a_card_are_those_of_the_cpu(found, kind, blob):
     """To rounding: at most 10 terms are added in another order; 20 and more last bits of each."""
-    home, height = (wall, (WALL,)) if "wall" in kind else (free, ())
-    add = home.velocity_kernel(blob, "planar" in kind, "flow" not in kind)
+    add = velocity_kernel(blob, "planar" in kind, "flow" not in kind, "wall" in kind)
     for size in SIZES:
         given = arrays(kind, *size)
         exact = given["out"].copy()
-        add(*list(given.values())[:3], EPSILON, VISCOSITY, *height, exact)
+        add(*list(given.values())[:3], EPSILON, VISCOSITY, WALL, exact)
         assert abs(exact - given["out"]).max() > 1e-3  # something was added
         name = f"{kind}_{blob}-{size[0]}-{size[1]}"
         np.testing.assert_allclose(found[name], exact, rtol=1e-12, atol=1e-13 * abs(exact).max())
@@ -94,7 +93,7 @@ def test_compiled_code_calls_a_sum_of_python_by_its_address():
 
     @kernel(f"void(int64, {MAT}, {MAT}, {MAT}, {MAT})")
     def call(address, targets, sources, loads, out):
-        call_sum(address, targets, sources, loads, 0.3, 0.4, 0.6, out)
+        call_sum(address, 0, targets, sources, loads, 0.3, 0.4, 0.6, out)
 
     noted, given = Noted(False, 7), arrays("spatial", 5, 13)
     targets, sources, loads = list(given.values())[:3]

@@ -76,7 +76,7 @@ def test_a_rule_that_is_not_good_enough_is_made_stricter(sources, monkeypatch):
     tables, found, exact = fast.prepare(points, loads), np.zeros((6, N)), np.zeros((6, N))
     assert tables.size > first.size
     fast.kernel(first, points, loads, False, found)
-    fast.exact(points, points, loads, EPSILON, VISCOSITY, exact)
+    fast.exact(points, points, loads, EPSILON, VISCOSITY, 0.0, exact)
     assert relative_error(found, exact).max() > 1e-5 >= fast.error.max()
 
 
@@ -111,7 +111,7 @@ def test_a_planar_sum_stays_in_its_plane():
         out[:] = 0.0
         fast.kernel(fast.prepare(points, loads), points, loads, False, out)
         exact[:] = 0.0
-        fast.exact(points, points, loads, EPSILON, VISCOSITY, exact)
+        fast.exact(points, points, loads, EPSILON, VISCOSITY, 0.0, exact)
         assert relative_error(out, exact).max() <= 1.3e-6
         if planar:
             assert not out[[0, 4, 5]].any()
@@ -169,7 +169,7 @@ def test_a_frozen_sum_is_smooth_and_one_with_new_lists_is_not(sources):
             there = np.ascontiguousarray(points + 0.02 * (k - 4) * way)
             out, exact = np.zeros((2, 6, N))
             fast.kernel(tables if freeze else fast.prepare(there, loads), there, loads, False, out)
-            fast.exact(there, there, loads, EPSILON, VISCOSITY, exact)
+            fast.exact(there, there, loads, EPSILON, VISCOSITY, 0.0, exact)
             errors.append((out - exact)[:3] / np.linalg.norm(exact[:3]))
         jumps.append(np.linalg.norm(np.diff(errors, n=4, axis=0), axis=(1, 2)).max())
     assert jumps[0] < 1e-2 * jumps[1]

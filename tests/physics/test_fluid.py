@@ -154,8 +154,8 @@ def test_planar_sum_equals_the_spatial_one(blob):
     X, loads = rng.normal(size=(3, 40)), rng.normal(size=(6, 40))
     X[0], loads[0], loads[4:] = 0.83, 0.0, 0.0
     flat, full = np.zeros((6, 40)), np.zeros((6, 40))
-    velocity_kernel(BLOBS[blob], True)(X, X, loads, EPSILON, VISCOSITY, flat)
-    velocity_kernel(BLOBS[blob], False)(X, X, loads, EPSILON, VISCOSITY, full)
+    velocity_kernel(BLOBS[blob], True)(X, X, loads, EPSILON, VISCOSITY, 0.0, flat)
+    velocity_kernel(BLOBS[blob], False)(X, X, loads, EPSILON, VISCOSITY, 0.0, full)
     for rows in (slice(0, 3), slice(3, 6)):
         assert flat[rows] == pytest.approx(full[rows], abs=1e-13 * abs(full[rows]).max())
 
@@ -167,7 +167,7 @@ def test_one_thread_and_two_give_the_same_bits():
     for threads in (1, min(2, numba.config.NUMBA_NUM_THREADS)):
         numba.set_num_threads(threads)
         out = np.zeros((6, 101))
-        velocity_kernel(BLOBS["algebraic7"])(X[:3], X[:3], loads, EPSILON, VISCOSITY, out)
+        velocity_kernel(BLOBS["algebraic7"])(X[:3], X[:3], loads, EPSILON, VISCOSITY, 0.0, out)
         results.append(out)
     numba.set_num_threads(numba.config.NUMBA_NUM_THREADS)
     assert np.array_equal(*results)

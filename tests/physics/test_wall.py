@@ -8,7 +8,7 @@ import wall_twin
 from rodsim import pressure, velocity
 from rodsim.errors import UsageError
 from rodsim.flows.blobs import BLOBS
-from rodsim.flows.wall import velocity_kernel
+from rodsim.flows.by_threads import velocity_kernel
 from rodsim.scene.shapes import rotation_matrix
 
 EPSILON, VISCOSITY, WALL = 0.31, 2.7e-3, -0.73
@@ -87,7 +87,7 @@ def mobility(X, blob, epsilon=EPSILON, wall=WALL):
     """The 6 N x 6 N matrix (forces, torques) -> (u, w), lengths over epsilon, without 8 pi mu."""
     points = np.ascontiguousarray((X - [0.0, 0.0, wall]).T / epsilon)
     matrix = np.zeros((6, len(X), 6, len(X)))  # load and its source, motion and its point
-    kernel, loads = velocity_kernel(BLOBS[blob]), np.eye(6)[:, :, None]
+    kernel, loads = velocity_kernel(BLOBS[blob], at_wall=True), np.eye(6)[:, :, None]
     for source in range(len(X)):
         place = points[:, source : source + 1].copy()
         for load, out in zip(loads, matrix[:, source], strict=True):
@@ -147,7 +147,7 @@ def test_the_scene_below_the_wall_moves_as_its_mirror_image(blob):
     for out, j in zip(rows, (mirror**2, mirror), strict=True):
         loads = np.concatenate([j * forces, np.prod(j) * j * torques])
         places = (j * (a - WALL * (mirror < 0)) for a in (targets, sources))
-        velocity_kernel(BLOBS[blob])(*places, loads, EPSILON, VISCOSITY, 0.0, out)
+        velocity_kernel(BLOBS[blob], at_wall=True)(*places, loads, EPSILON, VISCOSITY, 0.0, out)
     assert np.array_equal(rows[1], rows[0] * np.concatenate([mirror, -mirror]))
 
 
@@ -183,7 +183,8 @@ def test_variants_of_the_sum_agree_and_add_to_what_is_there(blob):
     for planar, angular in ((False, True), (True, True), (False, False)):
         rows = 6 if angular else 3
         out = before[:rows].copy()
-        velocity_kernel(BLOBS[blob], planar, angular)(X, X, loads, EPSILON, VISCOSITY, WALL, out)
+        kernel = velocity_kernel(BLOBS[blob], planar, angular, at_wall=True)
+        kernel(X, X, loads, EPSILON, VISCOSITY, WALL, out)
         for part in (slice(0, 3), slice(3, 6))[: rows // 3]:
             # Rounding of 40 terms, and of what was there before.
             found, size = (out - before[:rows])[part], abs(full[part]).max()

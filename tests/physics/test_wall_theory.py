@@ -5,7 +5,7 @@ import pytest
 
 from rodsim import velocity
 from rodsim.flows.blobs import BLOBS
-from rodsim.flows.wall import velocity_kernel
+from rodsim.flows.by_threads import velocity_kernel
 
 EIGHT_PI = 8 * np.pi
 MU, EPS = 1.7, 0.21
@@ -114,14 +114,14 @@ def test_infinite_straight_rods(blob, h, printed):
 
 def rigid_rod_drag(length, epsilon, h):
     """Drag per length over mu of a rod that translates without turning: along, across, away."""
-    n = round(length / epsilon) + 1
+    n, kernel = round(length / epsilon) + 1, velocity_kernel(BLOBS["algebraic7"], at_wall=True)
     X = np.zeros((3, n))
     X[0], X[2] = np.linspace(0, length, n), h
     matrix = np.zeros((6, n, 6, n))
     for source in range(n):
         for load, out in zip(np.eye(6)[:, :, None], matrix[:, source], strict=True):
             place = X[:, source : source + 1].copy()
-            velocity_kernel(BLOBS["algebraic7"])(X, place, load.copy(), epsilon, MU, 0.0, out)
+            kernel(X, place, load.copy(), epsilon, MU, 0.0, out)
     motions = np.kron(np.eye(6)[:, :3], np.ones((n, 1)))  # one a column: u = x, y or z, w = 0
     loads = np.linalg.solve(matrix.reshape(6 * n, -1).T, motions)
     return [loads[axis * n : (axis + 1) * n, axis].sum() / (length * MU) for axis in range(3)]

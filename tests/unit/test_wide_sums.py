@@ -18,17 +18,16 @@ import sys
 import numpy as np
 import rodsim.compiled.wide as wide
 wide.WIDE = True
-from rodsim.flows import {module} as sums
+from rodsim.flows.by_threads import velocity_kernel
 given, answer = np.load(sys.argv[1]), {{}}
 for count in {counts}:
     places, loads = given[f"places_{{count}}"], given[f"loads_{{count}}"]
     for power in (0, -90, 70):  # of the unit of length
         unit = 2.0**power
         out = np.zeros((3 if {rest[2]} is False else 6, count))
-        kernel = sums.velocity_kernel(*{rest})
+        kernel = velocity_kernel(*{rest})
         arguments = places * unit, places * unit, loads * unit ** np.repeat([0, 1], 3)[:, None]
-        height = [h * unit for h in {height}]
-        kernel(*arguments, {epsilon} * unit, {viscosity}, *height, out)
+        kernel(*arguments, {epsilon} * unit, {viscosity}, {height} * unit, out)
         out[:3] *= unit
         out[3:] *= unit**2
         answer[f"{{count}} {{power}}"] = out
@@ -64,11 +63,11 @@ def scenes(spatial):
     return found
 
 
-def wide_sums(folder, given, module, rest, height):
+def wide_sums(folder, given, rest, height=0.0):
     """Return the sums of a process of its own, by number of points and unit of length."""
     np.savez(folder / "given.npz", **given)
     code = CODE.format(
-        module=module, rest=rest, height=height, counts=COUNTS, epsilon=EPSILON, viscosity=VISCOSITY
+        rest=rest, height=height, counts=COUNTS, epsilon=EPSILON, viscosity=VISCOSITY
     )
     files = [str(folder / name) for name in ("given.npz", "found.npz")]
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(folder), "NUMBA_NUM_THREADS": "1"}
@@ -103,7 +102,7 @@ def check(found, count, exact):
 
 def test_sums_in_whole_vectors_of_sources_are_the_exact_ones(tmp_path):
     given = scenes(spatial=False)
-    found = wide_sums(tmp_path, given, "free", (7, True, True), ())
+    found = wide_sums(tmp_path, given, (7, True, True))
     for count in COUNTS:
         check(found, count, exact_sum(given[f"places_{count}"], given[f"loads_{count}"]))
 
@@ -114,7 +113,7 @@ def test_so_are_those_at_a_wall(tmp_path):
     from rodsim import velocity
 
     given, height = scenes(spatial=True), -4.6
-    found = wide_sums(tmp_path, given, "wall", (7, False, True), (height,))
+    found = wide_sums(tmp_path, given, (7, False, True, True), height)
     for count in COUNTS:
         points, loads = given[f"places_{count}"].T, given[f"loads_{count}"]
         fluid = EPSILON, VISCOSITY

@@ -38,7 +38,7 @@ def card() -> dict[str, str]:
 
 
 def add_on_card(at_wall: bool, blob: str, angular: bool, *arguments) -> None:
-    """Call a sum on the card from Python: with (targets, ..., out), as in ``compiled/kernels.py``.
+    """Call a sum on the card from Python: with (targets, ..., out), see ``CardSum.add``.
 
     Raises UsageError where there is no card, or it fails.
     """
@@ -47,7 +47,7 @@ def add_on_card(at_wall: bool, blob: str, angular: bool, *arguments) -> None:
 
     which = "spatial" if angular else "flow"
     name = f"{'wall_' if at_wall else ''}{which}_{blob.removeprefix('algebraic')}"
-    getattr(sums, name)(*arguments)
+    getattr(sums, name).add(*arguments)
     sums.failed()
 
 

@@ -14,7 +14,6 @@ import numpy as np
 from numba import cuda
 
 from rodsim.compiled.kernels import Kernel
-from rodsim.compiled.parts import FLOW, TRACERS, Part
 from rodsim.errors import UsageError
 from rodsim.flows.blobs import ALGEBRAIC7, ALGEBRAIC9
 from rodsim.flows.card.kernels import THREADS, add_parts, share_kernel, shares_of
@@ -23,14 +22,14 @@ from rodsim.flows.free import EIGHT_PI
 # Compiled code hands over an array as nine numbers (owner, parent, items, item size, address, two
 # lengths, two strides), each where C has an argument.
 ARRAY = (*[ctypes.c_void_p] * 2, *[ctypes.c_int64] * 2, ctypes.c_void_p, *[ctypes.c_int64] * 4)
-CALLBACK = ctypes.CFUNCTYPE(None, *3 * ARRAY, *3 * [ctypes.c_double], *ARRAY)
+CALLBACK = ctypes.CFUNCTYPE(None, ctypes.c_int64, *3 * ARRAY, *3 * [ctypes.c_double], *ARRAY)
 
 _one_at_a_time = threading.Lock()
 _failures: list[BaseException] = []
 
 
 class CardSum(Kernel):
-    """A sum on the card: ``sum(targets, sources, loads, epsilon, viscosity, wall, out)``."""
+    """A sum on the card, as in :mod:`rodsim.compiled.kernels`; ``run`` is not used."""
 
     def __init__(self, at_wall: bool, blob: int, planar: bool = False, angular: bool = True):
         super().__init__(self._add_safely, "SUM")
@@ -40,7 +39,7 @@ class CardSum(Kernel):
     def _compiled(self):
         return _Callback(self._add_safely)
 
-    def _add_safely(self, *arguments):
+    def _add_safely(self, run, *arguments):
         """Add to ``out``; what goes wrong makes it NaN and is kept for :func:`failed`."""
         try:
             self.add(*arguments)
@@ -66,9 +65,9 @@ class _Callback:
         self._c = CALLBACK(self._call)  # lives as long as its address is known
         self.address = ctypes.cast(self._c, ctypes.c_void_p).value
 
-    def _call(self, *numbers):
+    def _call(self, run, *numbers):
         arrays = [_array(numbers[begin : begin + 9]) for begin in (0, 9, 18, 30)]
-        self._function(*arrays[:3], *numbers[27:30], arrays[3])
+        self._function(run, *arrays[:3], *numbers[27:30], arrays[3])
 
 
 def _array(numbers):
@@ -113,22 +112,6 @@ class _Room:
 def room_of(choice: tuple, targets: int, sources: int) -> _Room:
     """Return the arrays of sums of one size."""
     return _Room(choice, targets, sources)
-
-
-def parts_on_card(scene, kind: str, pressure) -> list[Part]:
-    """Return the parts of the fluid of a scene; ``kind`` of the sum at rods: spatial or planar."""
-    at, height = ("", -np.inf) if scene.wall is None else ("wall_", scene.wall)
-    home, blob = "rodsim.flows.card", scene.blob.removeprefix("algebraic")
-
-    def made(side, kernel, which, **more):
-        fixed = np.array([0.0, scene.epsilon, scene.viscosity, height])
-        sums = (f"{home}.sums:{at}{which}_{blob}",)
-        return Part(
-            "fluid", side, f"{home}.parts:{kernel}", fixed=fixed, sums=sums, failed=failed, **more
-        )
-
-    tracers = made(TRACERS, "move_tracers", "flow", pressure=pressure)
-    return [made(FLOW, "move_rods", kind), tracers]
 
 
 def failed() -> None:

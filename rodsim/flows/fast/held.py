@@ -7,7 +7,7 @@ one, the mobility of what is free would be symmetric to its accuracy only.
 import numpy as np
 
 from rodsim.compiled.flags import call_sum, unsigned
-from rodsim.flows.fast.packed import EPSILON, HELD, SUM, VISCOSITY, WALL, integers
+from rodsim.flows.fast.packed import EPSILON, HELD, RUN, SUM, VISCOSITY, WALL, integers
 
 
 @unsigned
@@ -32,7 +32,8 @@ def move_held(fixed, points, loads, before, velocities):
         for c in range(3):
             places[c, k] = points[c, held[k]]
     epsilon, viscosity, wall = fixed[EPSILON], fixed[VISCOSITY], fixed[WALL]
-    call_sum(int(fixed[SUM]), places, points, loads, epsilon, viscosity, wall, before)
+    address, run = int(fixed[SUM]), int(fixed[RUN])
+    call_sum(address, run, places, points, loads, epsilon, viscosity, wall, before)
     for k in range(held.size):
         for c in range(6):
             velocities[c, held[k]] = before[c, k]

@@ -17,7 +17,7 @@ from rodsim.blocks.ends import end_node, held_ends
 from rodsim.case.fields import Model
 from rodsim.compiled.kernels import address_of
 from rodsim.compiled.parts import FLOW, TRACERS, Part
-from rodsim.flows.fluid import pressure_of
+from rodsim.flows.fluid import pair_sum, pressure_of
 from rodsim.forces.places import rod_named
 from rodsim.registry import Kind
 
@@ -50,12 +50,12 @@ class Sums(Model):
 def _build(case, scene) -> list[Part]:
     if case.fluid.sums is None:
         return []
-    exact, at = ("free", "") if scene.wall is None else ("wall", "wall_")
-    exact, blob = f"rodsim.flows.{exact}", scene.blob.removeprefix("algebraic")
+    at, blob = "" if scene.wall is None else "wall_", scene.blob.removeprefix("algebraic")
     kind = "planar" if scene.planar else "spatial"
     held = [end_node(rod_named(scene.rods, rod), which) for rod, which, _ in held_ends(case)]
-    needs = f"{exact}:{kind}_{blob}", *([f"{exact}:sum_{blob}"] if held else [])
-    rods = _Rods(scene, case.fluid.sums, held, needs[-1])
+    exact = pair_sum(scene, "spatial")
+    needs = *pair_sum(scene, kind), *(exact if held else ())
+    rods = _Rods(scene, case.fluid.sums, held, exact)
     tracers = _Tracers(scene, case.fluid.sums)
     return [
         Part(
@@ -64,7 +64,7 @@ def _build(case, scene) -> list[Part]:
         ),
         Part(
             "fluid", TRACERS, f"{HOME}:{at}tracers_{blob}", prepare=tracers.prepare,
-            needs=(f"{exact}:tracers_{blob}",), pressure=pressure_of(scene, exact),
+            needs=pair_sum(scene, "flow"), pressure=pressure_of(scene),
             **({"observe": tracers.observe, "series": (TRACER_ERRORS,)} if tracers.any else {}),
         ),
     ]  # fmt: skip
@@ -86,7 +86,7 @@ class _Rods:
 
             self.sum = rod_sum(self._start, *self._about, *self._options)
             if self._held:
-                self.sum.held, self.sum.sum = self._held, address_of(self._exact)
+                self.sum.held, self.sum.sum = self._held, tuple(map(address_of, self._exact))
         return self.sum.prepare(*_of_rods(self.sum, state.position, loads))
 
     def observe(self, state, row, scene):

@@ -1,15 +1,15 @@
 """All tables of a fast sum as one array of numbers, as a part takes them (``Part.fixed``).
 
 First the numbers epsilon, viscosity, what a force and a torque add at their own point, the height
-of the wall, the address of the exact sum, then where each table begins and how many entries it has,
-then the tables. Those of integers have two in the room of one float64.
+of the wall, the addresses of the exact sum and its runs, then where each table begins and how many
+entries it has, then the tables. Those of integers have two in the room of one float64.
 """
 
 import numpy as np
 
 from rodsim.compiled.flags import unsigned
 
-EPSILON, VISCOSITY, OWN_FORCE, OWN_TORQUE, WALL, SUM, HEAD = range(7)
+EPSILON, VISCOSITY, OWN_FORCE, OWN_TORQUE, WALL, SUM, RUN, HEAD = range(8)
 (
     NODES, SLOTS, WEIGHTS, CHUNKS, TOPS,  # the arcs, see Arcs
     FAR_BEGINS, FAR, NEAR_BEGINS, NEAR,  # who is far from, or near to, each arc or group of targets

@@ -24,7 +24,7 @@ from rodsim.flows.fast.sums import (
     WALL_TURNING_7,
     WALL_TURNING_9,
 )
-from rodsim.flows.wall import drop_below, touches
+from rodsim.flows.parts import drop_below, touches
 
 _SUMS = {  # by whether there is a wall, and whether the scene is planar
     (False, False): (SPATIAL_7, SPATIAL_9),

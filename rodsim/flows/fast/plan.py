@@ -18,8 +18,8 @@ import math
 import numpy as np
 
 from rodsim.compiled.constants import ON_WALL
-from rodsim.flows import free, wall
 from rodsim.flows.blobs import BLOBS
+from rodsim.flows.by_threads import velocity_kernel
 from rodsim.flows.fast import packed
 from rodsim.flows.fast.arcs import COUNT, LO, PROXIES, build_arcs
 from rodsim.flows.fast.bounds import bound
@@ -73,9 +73,8 @@ class FastSum:
 
     def __init__(self, counts, accuracy: float, epsilon, viscosity, wall_height=None, proxies=None):
         self.walled = wall_height is not None
-        self.accuracy, self.fluid = accuracy, (epsilon, viscosity)
-        self.fluid += (wall_height,) if self.walled else ()
-        self.held, self.sum = (), 0
+        self.accuracy, self.fluid = accuracy, (epsilon, viscosity, wall_height or 0.0)
+        self.held, self.sum = (), (0, 0)
         self.arcs = build_arcs(counts, proxies or proxies_for(accuracy))
         self._tree = self.arcs.nodes, self.arcs.proxies, self.arcs.weights
         self._tree += self.arcs.chunks, self.arcs.tops
@@ -98,19 +97,20 @@ class FastSum:
         p = packed
         own = dict(zip((p.NODES, p.SLOTS, p.WEIGHTS, p.CHUNKS, p.TOPS), self._tree, strict=True))
         names = p.FAR_BEGINS, p.FAR, p.NEAR_BEGINS, p.NEAR
-        wall = self.fluid[2] if self.walled else 0.0
-        numbers = *self.fluid[:2], *self.own, wall, self.sum
+        epsilon, viscosity, wall = self.fluid
+        numbers = epsilon, viscosity, *self.own, wall, *self.sum
         more |= {p.HELD: np.array(self.held, np.int32)}
         return p.pack(numbers, own | dict(zip(names, lists, strict=True)) | more)
 
     def _exact(self, blob, planar=False, angular=True):
-        return (wall if self.walled else free).velocity_kernel(BLOBS[blob], planar, angular)
+        return velocity_kernel(BLOBS[blob], planar, angular, self.walled)
 
 
 class RodSum(FastSum):
     """The fast sum at the points of the rods themselves.
 
-    As a part it is exact at points that are ``held``, by the sum at an address ``sum``.
+    As a part it is exact at points that are ``held``: ``sum`` has the addresses of the exact sum
+    and of its runs.
     """
 
     def __init__(
