@@ -81,10 +81,12 @@ def flow(output, at, grid_text, resolution, path, colour, arrows, log, tracers, 
     from rodsim.analysis.replay import Replay
     from rodsim.compiled.threads import threads_for
     from rodsim.output import open_trajectory
+    from rodsim.run.warmup import ensure_compiled
 
     sheet = size, dpi, title
     with open_trajectory(output) as run, threads_for(10**12, threads):
         replay = Replay(run, device)
+        ensure_compiled(replay.scene, lambda line: quiet or click.echo(line, err=True), flow=True)
         if tracers:
             _tracers(replay, at, until, grid_text, resolution, path, sheet, quiet)
         else:

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from rodsim.compiled.constants import HALF_TURN
-from rodsim.compiled.flags import MAT, RODS, TRIADS, VEC, kernel, unsigned
+from rodsim.compiled.flags import MAT, RODS, TRIADS, VEC, inline, kernel, unsigned
 from rodsim.compiled.kernels import part
 from rodsim.forces.segments import (
     axial,
@@ -26,7 +26,7 @@ from rodsim.forces.segments import (
 def _loads(varying):
     """Make the loads of rods, one after another."""
 
-    @unsigned
+    @inline
     def point_loads(X, D, omega, rods, along, loads):
         internal, end = np.empty((6, X.shape[1])), np.uint64(X.shape[1])
         if varying:
@@ -61,7 +61,7 @@ def point_loads(X, D, omega, rods, loads, along=UNIFORM):
 def elastic_loads(row, fixed, rods, state, loads, velocities):
     """The part of elastic rods: ``row`` is the strain twist, see :func:`point_loads`."""
     omega = row.reshape(3, row.size // 3)
-    _uniform_loads(state[0], state[1], omega, rods, fixed.reshape(0, 0), loads)
+    _uniform_loads(state[0], state[1], omega, rods, loads, loads)  # nothing varies along them
 
 
 @part

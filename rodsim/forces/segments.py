@@ -119,17 +119,15 @@ def _internal(varying):
             b = moduli[3, r], moduli[4, r], moduli[5, r]
             rest = 0.0, 0.0, 0.0
             last = first + np.uint64(counts[r]) - ONE
-            for k in range(max(first, begin), min(last, end)):
-                if varying:
-                    a, b, rest = _moduli(along, k)
-                _segment_loads(X, D, omega, a, b, rest, ds, k, k + ONE, internal)
-            if last < begin or last >= end:
-                continue
-            if closed[r]:
-                if varying:
-                    a, b, rest = _moduli(along, last)
-                _segment_loads(X, D, omega, a, b, rest, ds, last, first, internal)
-            else:
+            for closing in range(2 if closed[r] else 1):  # one loop to compile, run twice
+                low, high, on = first, last, ONE
+                if closing:
+                    low, high, on = last, last + ONE, first - last
+                for k in range(max(low, begin), min(high, end)):
+                    if varying:
+                        a, b, rest = _moduli(along, k)
+                    _segment_loads(X, D, omega, a, b, rest, ds, k, k + on, internal)
+            if begin <= last < end and not closed[r]:
                 for c in range(6):
                     internal[c, last] = 0.0
 
@@ -143,12 +141,14 @@ def balances(X, rods, begin, end, internal, loads):
     for r in range(firsts.size):
         first = np.uint64(firsts[r])
         last = first + np.uint64(counts[r]) - ONE
-        if begin <= first < end:
-            _balance(X, internal, loads, first, last, first + ONE)
-        for k in range(max(first + ONE, begin), min(last, end)):
-            _balance(X, internal, loads, k, k - ONE, k + ONE)
-        if begin <= last < end:
-            _balance(X, internal, loads, last, last - ONE, first)
+        for piece in range(3):  # the first point, those between, the last: one loop to compile
+            low, high, back, on = first + ONE, last, ONE, ONE
+            if piece == 0:
+                low, high, back = first, first + ONE, first - last
+            elif piece == 2:
+                low, high, on = last, last + ONE, first - last
+            for k in range(max(low, begin), min(high, end)):
+                _balance(X, internal, loads, k, k - back, k + on)
 
 
 # Globals, so that compiled functions may call them and still be read from Numba's cache.

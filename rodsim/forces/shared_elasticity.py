@@ -45,7 +45,7 @@ _uniform_loads, _varying_loads = _loads(False), _loads(True)
 def elastic_loads(row, fixed, rods, state, loads, velocities):
     """The part of elastic rods, see :func:`rodsim.forces.elasticity.elastic_loads`."""
     omega = row.reshape(3, row.size // 3)
-    _uniform_loads(state[0], state[1], omega, rods, fixed.reshape(0, 0), loads)
+    _uniform_loads(state[0], state[1], omega, rods, loads, loads)  # nothing varies along them
 
 
 @part
