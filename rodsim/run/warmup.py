@@ -27,10 +27,12 @@ from rodsim.processes import this_rodsim
 from rodsim.progress import SECONDS_BETWEEN_LINES
 
 LIST, LOCK = "compiled.json", "lock"
-# Importing the first compiles everything but the parts; the others are large pieces of that.
+# What every run needs beside its parts. Who imports the second compiles it all; the others are
+# large pieces, in an order that lets two processes come at none of them together.
 MACHINE = (
+    "rodsim.scene.loop:velocities_at",
     "rodsim.run.machine",
-    "rodsim.forces.elasticity",
+    "rodsim.scene.stages",
     "rodsim.scene.gap",
     "rodsim.compiled.rotations",
 )
