@@ -19,7 +19,7 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
-from rodsim.compiled.flags import inline, unsigned
+from rodsim.compiled.flags import ONE, inline, unsigned
 from rodsim.compiled.kernels import jit_is_off
 
 LANES = 8
@@ -78,14 +78,15 @@ def whole_vectors(sources, loads, unit):
     The last source is there again, without load: a rest would be summed one by one, which takes
     as long as whole vectors of it.
     """
-    count = sources.shape[1]
-    whole = (count + LANES - 1) // LANES * LANES
+    count = np.uint64(sources.shape[1])
+    whole = (sources.shape[1] + LANES - 1) // LANES * LANES
     places, theirs = np.empty((3, whole)), np.empty((6, whole))
     for c in range(3):
-        for k in range(whole):
-            last = min(k, count - 1)
-            there = 1.0 if k < count else 0.0
-            places[c, k] = unit * sources[c, last]
-            theirs[c, k] = there * loads[c, last]
-            theirs[c + 3, k] = there * unit * loads[c + 3, last]
+        for k in range(count):
+            places[c, k] = unit * sources[c, k]
+            theirs[c, k] = loads[c, k]
+            theirs[c + 3, k] = unit * loads[c + 3, k]
+        for k in range(count, np.uint64(whole)):
+            places[c, k] = places[c, count - ONE]
+            theirs[c, k] = theirs[c + 3, k] = 0.0
     return places, theirs

@@ -31,33 +31,36 @@ def inverse_distance(r2, e2):
 
 @inline
 def stokeslet_scalars(blob, inverse, e2):
-    """Return (H1, H2, Q) times 8 pi at 1/R = ``inverse``, squared blob size e2."""
+    """Return (H1, H2, Q/2) times 8 pi at 1/R = ``inverse``, squared blob size e2.
+
+    As they stand in (61): factors of 2 that are left to the sums are operations there.
+    """
     inverse2 = inverse * inverse
     inverse3 = inverse * inverse2
     p = e2 * inverse2
     if blob == ALGEBRAIC7:
-        return inverse * (1.0 + p), inverse3, inverse3 * (2.0 + 3.0 * p)
+        return inverse + inverse * p, inverse3, inverse3 * (1.0 + 1.5 * p)
     return (
-        inverse * (1.0 + p * (0.5 + 1.5 * p)),
+        inverse + inverse * (p * (0.5 + 1.5 * p)),
         inverse3 * (1.0 + 1.5 * p),
-        inverse3 * (2.0 + p * (3.0 + 7.5 * p)),
+        inverse3 * (1.0 + p * (1.5 + 3.75 * p)),
     )
 
 
 @inline
 def dipole_scalars(blob, inverse, e2):
-    """Return (D1, D2) times 8 pi at 1/R = ``inverse``, squared blob size e2."""
+    """Return (D1/4, D2/4), as they stand in (66), times 8 pi at 1/R = ``inverse``."""
     inverse2 = inverse * inverse
     inverse3 = inverse * inverse2
     p = e2 * inverse2
     if blob == ALGEBRAIC7:
         return (
-            inverse3 * (-2.0 + p * (-3.0 + 15.0 * p)),
-            inverse3 * inverse2 * (6.0 + 15.0 * p),
+            inverse3 * (-0.5 + p * (-0.75 + 3.75 * p)),
+            inverse3 * inverse2 * (2.5 * (1.0 + 1.5 * p) - 1.0),
         )
     return (
-        inverse3 * (-2.0 + p * (-3.0 + p * (-22.5 + 52.5 * p))),
-        inverse3 * inverse2 * (6.0 + p * (15.0 + 52.5 * p)),
+        inverse3 * (-0.5 + p * (-0.75 + p * (-5.625 + 13.125 * p))),
+        inverse3 * inverse2 * (1.5 + p * (3.75 + 13.125 * p)),
     )
 
 

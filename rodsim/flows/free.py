@@ -60,7 +60,6 @@ def add_pair(blob, planar, angular, r, g, m, inverse, e2, sums):
         gr += gx * rx
     h1, h2, q = stokeslet_scalars(blob, inverse, e2)
     along = h2 * gr
-    q *= 0.5
     uy += gy * h1 + along * ry - q * (mx * rz)
     uz += gz * h1 + along * rz + q * (mx * ry)
     if not planar:
@@ -69,10 +68,9 @@ def add_pair(blob, planar, angular, r, g, m, inverse, e2, sums):
         uz -= q * (my * rx)
     if angular:
         d1, d2 = dipole_scalars(blob, inverse, e2)
-        d1 *= 0.25
         wx += q * (gy * rz - gz * ry) + d1 * mx
         if not planar:
-            axial = 0.25 * d2 * (mx * rx + my * ry + mz * rz)
+            axial = d2 * (mx * rx + my * ry + mz * rz)
             wx += axial * rx
             wy += q * (gz * rx - gx * rz) + d1 * my + axial * ry
             wz += q * (gx * ry - gy * rx) + d1 * mz + axial * rz
@@ -144,6 +142,6 @@ def pressure_kernel(blob):
                 inverse = inverse_distance(rx * rx + ry * ry + rz * rz, e2)
                 _, _, q = stokeslet_scalars(blob, inverse, e2)
                 total += q * (loads[0, k] * rx + loads[1, k] * ry + loads[2, k] * rz)
-            out[i] = total / EIGHT_PI
+            out[i] = total / (0.5 * EIGHT_PI)
 
     return pressure_sum

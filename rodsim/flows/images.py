@@ -23,8 +23,6 @@ Two passes over the sources, first all distances of a target and then its sum, a
 
 import math
 
-import numpy as np
-
 from rodsim.compiled.flags import inline
 from rodsim.compiled.wide import inverse_root
 from rodsim.flows.blobs import dipole_scalars, image_scalars, stokeslet_scalars
@@ -59,7 +57,7 @@ def _force_scalars(blob, inverse, image, zh, e2):
     """Return H1 - H1* - 2 z h H2*, H2 - H2* and (Q - Q*)/2, all exactly 0 on the wall."""
     h1, h2, q = stokeslet_scalars(blob, inverse, e2)
     h1_image, h2_image, q_image = stokeslet_scalars(blob, image, e2)
-    return (h1 - h1_image) - 2.0 * zh * h2_image, h2 - h2_image, 0.5 * (q - q_image)
+    return (h1 - h1_image) - 2.0 * zh * h2_image, h2 - h2_image, q - q_image
 
 
 @inline
@@ -68,7 +66,7 @@ def _torque_scalars(blob, inverse, image, zh, e2):
     d1, d2 = dipole_scalars(blob, inverse, e2)
     _, _, q_image = stokeslet_scalars(blob, image, e2)
     p, _, e1, e_2 = image_scalars(blob, image, e2)
-    return 0.25 * d1 - 0.5 * q_image, 0.25 * d2, 0.5 * (zh * e_2 - p) + 0.25 * e1
+    return d1 - q_image, d2, 0.5 * (zh * e_2 - p) + 0.25 * e1
 
 
 @inline
@@ -133,13 +131,12 @@ def with_v(z, sums):
 
 
 @inline
-def add_up(blob, planar, angular, wide, x, y, z, sources, loads, wall_height, e2):
+def add_up(blob, planar, angular, wide, x, y, z, sources, loads, inverses, wall_height, e2):
     """Return 8 pi mu (u, w) at one target, from all sources; constants choose the sum.
 
-    ``wide``: 1/R by :mod:`rodsim.compiled.wide`.
+    ``wide``: 1/R by :mod:`rodsim.compiled.wide`. ``inverses`` (2, N): room.
     """
     z = z - wall_height
-    inverses = np.empty((2, sources.shape[1]))
     _all_inverse_distances(wide, x, y, z, sources, wall_height, e2, inverses)
     sums = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     for k in range(sources.shape[1]):

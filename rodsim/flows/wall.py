@@ -37,10 +37,11 @@ def _sum(blob, planar, angular):
             unit = unit_of(epsilon)
             sources, loads = whole_vectors(sources, loads, unit)
         e2, height = unit * epsilon * (unit * epsilon), unit * wall
-        scale = unit / (EIGHT_PI * viscosity)
+        scale, inverses = unit / (EIGHT_PI * viscosity), np.empty((2, sources.shape[1]))
         for i in range(np.uint64(begin), np.uint64(end)):
             x, y, z = unit * targets[0, i], unit * targets[1, i], unit * targets[2, i]
-            six = add_up(blob, planar, angular, WIDE, x, y, z, sources, loads, height, e2)
+            at, g = sources, loads
+            six = add_up(blob, planar, angular, WIDE, x, y, z, at, g, inverses, height, e2)
             for c in range(3):
                 out[c, i] += scale * six[c]
             for c in range(3, out.shape[0]):
@@ -75,7 +76,7 @@ def pressure_kernel(blob):
                 p, _, e1, _ = image_scalars(blob, image, e2)
                 ar = (h * gx + loads[4, k]) * rx + (h * gy - loads[3, k]) * ry - h * gz * s
                 total += (q - q_image) * (gx * rx + gy * ry + gz * d)
-                total += 2.0 * s * (e1 - 2.0 * p) * ar
-            out[i] += total / EIGHT_PI
+                total += s * (e1 - 2.0 * p) * ar
+            out[i] += total / (0.5 * EIGHT_PI)
 
     return pressure_sum

@@ -16,13 +16,15 @@ from rodsim.flows.blobs import (
 )
 
 EPSILON = 0.37
+FACTORS = np.array([1, 1, 2, 4, 4])  # of H1, H2, Q/2, D1/4, D2/4
 DISTANCES = [0.05, 0.4, 1.3, 6.0]
 both_blobs = pytest.mark.parametrize("blob", BLOBS)
 
 
 def fast_scalars(blob, r, e):
-    """The product's formulas, run as plain Python."""
-    return np.array(scalars_of(blob, r, e, stokeslet_scalars, dipole_scalars)) / (8 * np.pi)
+    """The product's formulas, run as plain Python: H1, H2, Q, D1, D2."""
+    found = scalars_of(blob, r, e, stokeslet_scalars, dipole_scalars)
+    return np.array(found) * FACTORS / (8 * np.pi)
 
 
 def scalars_of(blob, r, e, *functions):
@@ -115,14 +117,14 @@ def test_identities_of_the_scalars_of_images(blob, r):
 
     far = [values(r + k * h) for k in (-2, -1, 1, 2)]
     slope = (far[0] - 8 * far[1] + 8 * far[2] - far[3]) / (12 * h)  # relative error about 1e-13
-    h1, h2, q, _, d2, p, e, e1, e_2 = values(r)
+    h1, h2, half_q, _, quarter_d2, p, e, e1, e_2 = values(r)
     assert slope[1] == pytest.approx(r * p, rel=1e-9)
     assert -3 * h2 - r * slope[1] == pytest.approx(e, abs=1e-9 * h2)
     assert slope[0] / r + h2 == pytest.approx(e, abs=1e-9 * h1 / r**2)
-    assert 2 * h2 - q == pytest.approx(e, abs=1e-14 * h2)
+    assert 2 * h2 - 2 * half_q == pytest.approx(e, abs=1e-14 * h2)
     assert slope[6] == pytest.approx(r * e1, rel=1e-9)
     assert slope[7] == pytest.approx(r * e_2, rel=1e-9)
-    assert e1 - 2 * p == pytest.approx(d2, rel=1e-14)
+    assert e1 - 2 * p == pytest.approx(4 * quarter_d2, rel=1e-14)
 
 
 @pytest.mark.parametrize("blob", WIDTHS)

@@ -7,6 +7,7 @@ share out the arcs; all inside of one is serial, in an order that the lists fix,
 not depend on the number of threads.
 """
 
+import numpy as np
 from numba import prange
 
 from rodsim.compiled.flags import threaded_kernel, unsigned
@@ -105,11 +106,12 @@ def _fast_sum(walled, blob, planar):
                     a = order[k]
                     others = partners[begins[a] : begins[a + 1]]
                     sources, theirs = _sources(nodes, others, first, count, at, g)
+                    room = np.empty((2, sources.shape[1] if walled else 0))
                     for i in range(nodes[a, first], nodes[a, first] + nodes[a, count]):
                         x, y, z = at[0, i], at[1, i], at[2, i]
                         if walled:
                             six = add_up_at_wall(
-                                blob, planar, True, False, x, y, z, sources, theirs, wall, e2
+                                blob, planar, True, False, x, y, z, sources, theirs, room, wall, e2
                             )
                         else:
                             six = add_up(blob, planar, True, False, x, y, z, sources, theirs, e2)
@@ -140,6 +142,7 @@ def _group_sum(walled, blob, angular):
                 close = near[near_begins[a] : near_begins[a + 1]]
                 count = _total(nodes, afar, PROXIES) + _total(nodes, close, COUNT)
                 sources, g = room_for(count)
+                room = np.empty((2, count if walled else 0))
                 end = _gather(nodes, afar, START, PROXIES, places, shared, sources, g, 0)
                 _gather(nodes, close, LO, COUNT, points, loads, sources, g, end)
                 for t in range(members[a], members[a + 1]):
@@ -147,7 +150,7 @@ def _group_sum(walled, blob, angular):
                     x, y, z = targets[0, i], targets[1, i], targets[2, i]
                     if walled:
                         six = add_up_at_wall(
-                            blob, False, angular, False, x, y, z, sources, g, wall, e2
+                            blob, False, angular, False, x, y, z, sources, g, room, wall, e2
                         )
                     else:
                         six = add_up(blob, False, angular, False, x, y, z, sources, g, e2)
