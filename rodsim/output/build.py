@@ -17,7 +17,7 @@ import numpy as np
 
 from rodsim.compiled.settings import machine
 from rodsim.errors import FileError
-from rodsim.output import layout
+from rodsim.output import layout, rows
 from rodsim.output.checkpoint import allocate
 from rodsim.output.h5md import describe
 from rodsim.output.layout import CLOCK, Plan
@@ -56,15 +56,10 @@ def build_file(path: Path, plan: Plan) -> h5py.File:
     return file
 
 
-def descriptor(file: h5py.File) -> int:
-    """Return the system's number of the open file."""
-    return file.id.get_vfd_handle()
-
-
 def trim(file: h5py.File) -> None:
     """Give back what was reserved and is not used."""
     file.flush()
-    os.ftruncate(descriptor(file), file.id.get_filesize())
+    os.ftruncate(rows.descriptor(file), file.id.get_filesize())
 
 
 def room(plan: Plan) -> int:
@@ -93,7 +88,7 @@ def _reserve(file, count):
     if not hasattr(os, "posix_fallocate"):
         return
     try:
-        os.posix_fallocate(descriptor(file), 0, count)
+        os.posix_fallocate(rows.descriptor(file), 0, count)
     except OSError as error:
         if error.errno not in (errno.EINVAL, errno.EOPNOTSUPP, errno.ENOSYS):
             raise

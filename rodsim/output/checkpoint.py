@@ -38,7 +38,6 @@ class CheckpointWriter:
     """
 
     def __init__(self, group: h5py.Group):
-        self._file = group.file
         slots = [group[name] for name in SLOTS]
         self._slots = [{name: Rows(slot[name]) for name in slot} for slot in slots]
         self._serial = max(int(slot[SEAL][0]) for slot in slots)
@@ -55,10 +54,8 @@ class CheckpointWriter:
                 raise ValueError(f"checkpoint: {name} changed its shape or type")
         for name, array in arrays.items():
             slot[name].put_all(array)
-        self._file.flush()
         self._serial += 1
         slot[SEAL].put_all([self._serial, checksum(self._serial, arrays)])
-        self._file.flush()
         self._turn = 1 - self._turn
 
 

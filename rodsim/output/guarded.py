@@ -122,7 +122,9 @@ class GuardedFile:
     def contiguous(self, name: str, kinds: str, shape) -> None:
         """Check a dataset that is to be written: in one piece, as the run has made it."""
         self.array(name, kinds, shape, np.s_[:0] if shape else ())
-        if self._dataset(name).chunks is not None:
+        data = self._dataset(name)
+        size = data.size * data.dtype.itemsize
+        if size and (data.id.get_offset() is None or data.id.get_storage_size() != size):
             raise self._laid_out_anew(name)
 
     def growing(self, name: str, kinds: str) -> None:
