@@ -23,12 +23,24 @@ def write_at(handle: int, data: memoryview, offset: int) -> None:
         data, offset = data[count:], offset + count
 
 
+def make_room(group: h5py.Group, name: str, shape, dtype, fill=0) -> h5py.Dataset:
+    """Create a dataset of fixed size in one piece, allocated and filled at once."""
+    properties = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    properties.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
+    properties.set_fill_time(h5py.h5d.FILL_TIME_ALLOC)
+    properties.set_fill_value(np.array(fill, dtype))
+    properties.set_obj_track_times(False)
+    kind, room = h5py.h5t.py_create(np.dtype(dtype), logical=True), h5py.h5s.create_simple(shape)
+    return h5py.Dataset(h5py.h5d.create(group.id, name.encode(), kind, room, properties))
+
+
 class Rows:
     """The rows of a dataset of fixed size, or a single number. After a flush of the file."""
 
-    def __init__(self, dataset: h5py.Dataset):
+    def __init__(self, file: h5py.File, name: str):
+        dataset = h5py.h5d.open(file.id, name.encode())
         self.shape, self.dtype = dataset.shape, dataset.dtype
-        self._handle, self._offset = descriptor(dataset.file), dataset.id.get_offset()
+        self._handle, self._offset = descriptor(file), dataset.get_offset()
 
     def put(self, index: int, row) -> None:
         """Write one row."""

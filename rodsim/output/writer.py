@@ -45,9 +45,9 @@ class TrajectoryWriter:
         self.committed = int(file["committed"][()])
         self._file, self._lock = file, lock
         self._fields, self._observables = [*plan.fields_stored()], [*plan.observables_stored()]
-        self._values = [Rows(file[f"{s.where}/value"]) for s in plan.stored()]
-        self._time, self._step = Rows(file[f"{CLOCK}/time"]), Rows(file[f"{CLOCK}/step"])
-        self._counter, self._view = Rows(file["committed"]), View(file["VTKHDF"])
+        self._values = [Rows(file, f"{s.where}/value") for s in plan.stored()]
+        self._time, self._step = Rows(file, f"{CLOCK}/time"), Rows(file, f"{CLOCK}/step")
+        self._counter, self._view = Rows(file, "committed"), View(file["VTKHDF"])
         self._checkpoint = CheckpointWriter(file["checkpoint"])
 
     @classmethod
