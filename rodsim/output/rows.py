@@ -81,7 +81,8 @@ class Counter:
 
     def __init__(self, node: h5py.Group, name: str):
         self._id = h5py.h5a.open(node.id, name.encode())
+        self._type = h5py.h5t.py_create(np.dtype(np.int64))
 
     def put(self, value: int) -> None:
         """Write it, in place."""
-        self._id.write(np.array(value, dtype=np.int64))
+        self._id.write(np.array(value, dtype=np.int64), self._type)
