@@ -15,9 +15,9 @@ import numba
 from numba import njit
 from numba.core.caching import FunctionCache
 from numba.core.ccallback import CFunc
-from numba.core.runtime import rtsys
 from numba.core.sigutils import normalize_signature
 
+from rodsim.compiled import reading
 from rodsim.compiled.folder import alone
 from rodsim.compiled.settings import without_scipy
 from rodsim.errors import FileError
@@ -33,9 +33,16 @@ class _Cache(FunctionCache):
     it knows, which takes longer than to read what a run needs. Who compiles does so again.
     """
 
+    _impl_class = reading.Impl
+
+    def __init__(self, function):
+        super().__init__(function)
+        stamp = self._impl.locator.get_source_stamp()
+        self._cache_file = reading.File(self._cache_path, self._impl.filename_base, stamp)
+
     def load_overload(self, sig, target_context):
         """Return the compiled function of a signature, None where the cache has none."""
-        rtsys.initialize(target_context)  # memory of arrays, which the code on the disk calls
+        reading.know_memory()
         with without_scipy(), self._guard_against_spurious_io_errors():
             found = self._load_overload(sig, target_context)
             if found is None:
