@@ -1,4 +1,4 @@
-"""Compiled functions that come from the cache: what reading them leaves out, and what it may not."""
+"""Compiled functions from the cache: what reading them leaves out, and what it may not."""
 
 import os
 import subprocess
