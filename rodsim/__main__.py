@@ -4,12 +4,8 @@ import gc
 import os
 import sys
 
-from rodsim import cli
+from rodsim.starting import start_quickly
 from rodsim.streams import prepare_streams
-
-# Importing makes many objects and no garbage: looking for it after every 700, as Python does by
-# default, takes a tenth of the time to start.
-OBJECTS_BETWEEN_COLLECTIONS = 100_000
 
 
 def main():
@@ -18,9 +14,10 @@ def main():
     HDF5 cannot be closed after a failed write: it tries again to write what did not fit, and can
     end the process in a crash that hides our message and exit code.
     """
-    gc.set_threshold(OBJECTS_BETWEEN_COLLECTIONS)
-    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # looked for in every package
+    start_quickly()
     prepare_streams()
+    from rodsim import cli  # once nothing is looked for any more
+
     try:
         cli.main(prog_name="rodsim")
     except SystemExit as end:

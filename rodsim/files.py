@@ -2,7 +2,6 @@
 
 import errno
 import os
-import secrets
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -33,6 +32,11 @@ def reason_of(error: Exception) -> str:
     return os.strerror(number) if number else str(error)
 
 
+def unforeseeable() -> str:
+    """Return letters for the name of a file that nobody else can have thought of."""
+    return os.urandom(8).hex()
+
+
 @contextmanager
 def replacing(path):
     """Give a name beside ``path`` to write to; in the end that file takes its place, whole.
@@ -43,7 +47,7 @@ def replacing(path):
     path = Path(path)
     if _is_output(path):
         raise FileError(f"{path}: is the output of a run, not replaced; give another name")
-    temporary = path.with_name(f".{path.stem}.{secrets.token_hex(8)}{path.suffix}")
+    temporary = path.with_name(f".{path.stem}.{unforeseeable()}{path.suffix}")
     try:
         # Made here, so that a file or link that someone else has put there is never written to.
         os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import errno
 import os
-import secrets
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from rodsim import kernel_locks
+from rodsim.files import unforeseeable
 from rodsim.processes import Process, this_process
 
 LONGEST = 4096  # bytes of a lock that are read
@@ -107,7 +107,7 @@ class NamedLock:
 
     def _remove_stale(self, owner):
         """Remove a stale lock where the system has none: of two who try, only one can rename it."""
-        aside = self.path.with_name(f"{self.path.name}.{secrets.token_hex(8)}")
+        aside = self.path.with_name(f"{self.path.name}.{unforeseeable()}")
         try:
             os.rename(self.path, aside)
         except FileNotFoundError:

@@ -83,22 +83,22 @@ class Rods(tuple):
         """The moduli of all, (6, R)."""
         return np.array([rod.moduli for rod in self], dtype=float).T.copy()
 
-    @property
+    @cached_property
     def points(self) -> int:
         """Number of points N of all rods."""
         return int(self.count.sum())
 
-    @property
+    @cached_property
     def tables(self):
         """The argument ``rods`` of every kernel: first, count, closed, spacing, moduli."""
         return self.first, self.count, self.closed, self.spacing, self.moduli
 
-    @property
+    @cached_property
     def segments(self) -> np.ndarray:
         """Number of segments of each rod, (R,)."""
         return np.where(self.closed, self.count, self.count - 1)
 
-    @property
+    @cached_property
     def lengths(self) -> np.ndarray:
         """Unstressed length of each rod, (R,)."""
         return self.segments * self.spacing

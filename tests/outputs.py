@@ -20,7 +20,7 @@ CASE = CaseText("title: écoute\n", '{"title": "écoute"}', ["time.end=1.7", "ro
 STATE = {"X": np.zeros((3, 9)), "time": 0.0, "step": 0}
 
 
-def create(path, overwrite=False, **options):
+def make_plan(**options):
     settings = {
         "case": CASE,
         "rods": RODS,
@@ -31,7 +31,11 @@ def create(path, overwrite=False, **options):
         "density": True,
         "checkpoint": STATE,
     }
-    return TrajectoryWriter.create(path, Plan(**settings | options), overwrite)
+    return Plan(**settings | options)
+
+
+def create(path, overwrite=False, **options):
+    return TrajectoryWriter.create(path, make_plan(**options), overwrite)
 
 
 def frame(index):

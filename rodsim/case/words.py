@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from difflib import get_close_matches
 from typing import Any
 
 from rodsim.text import printable
@@ -45,6 +44,8 @@ def did_you_mean(word: str, choices: Iterable[str]) -> str:
     lowered = {choice.lower(): choice for choice in choices}
     if SYNONYMS.get(word.lower()) in lowered:
         return f": did you mean '{lowered[SYNONYMS[word.lower()]]}'?"
+    from difflib import get_close_matches  # not for who makes no mistake
+
     close = get_close_matches(word.lower(), lowered, n=1, cutoff=0.6)
     return f": did you mean '{lowered[close[0]]}'?" if close else ""
 

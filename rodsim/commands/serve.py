@@ -7,7 +7,6 @@ output. Where the input ends, whoever gave the orders is gone: the command stops
 
 from __future__ import annotations
 
-import gc
 import json
 import os
 import queue
@@ -17,8 +16,8 @@ import traceback
 from contextlib import contextmanager, suppress
 
 from rodsim import cli
-from rodsim.__main__ import OBJECTS_BETWEEN_COLLECTIONS
 from rodsim.run.stopping import stop_all
+from rodsim.starting import start_quickly
 from rodsim.streams import prepare_streams
 from rodsim.sweep.workers import IDLE
 
@@ -27,7 +26,7 @@ IDLE_SECONDS = 60.0  # after which a process without orders ends: who gave them 
 
 def main() -> int:
     """Do what is ordered until nothing comes any more; return the exit code of this process."""
-    gc.set_threshold(OBJECTS_BETWEEN_COLLECTIONS)
+    start_quickly()
     prepare_streams()
     orders, answers = os.fdopen(os.dup(0), "rb", buffering=0), os.dup(1)
     _point(os.devnull, 0, 1)

@@ -1,23 +1,22 @@
 """What Numba keeps of compiled code: whether it can, and whether what lies there is whole.
 
-A file of its cache that is cut off ends every start in an EOFError. Numba gives a file its name
-only when it is whole, so one that does not end as a pickle was damaged since.
+A file of its cache that is cut off would end every start in an EOFError. Numba gives a file its
+name only when it is whole, so one that does not end as a pickle was damaged since.
 """
 
 import os
 import warnings
 from contextlib import ExitStack, suppress
-from functools import cache
+from functools import cache, cached_property
 from hashlib import sha256
 from pathlib import Path
 
-import numba
 from numba import njit
-from numba.core.caching import FunctionCache
+from numba.core.caching import FunctionCache, NullCache
 from numba.core.ccallback import CFunc
-from numba.core.runtime import rtsys
 from numba.core.sigutils import normalize_signature
 
+from rodsim.compiled import reading
 from rodsim.compiled.folder import alone
 from rodsim.compiled.settings import without_scipy
 from rodsim.errors import FileError
@@ -33,11 +32,22 @@ class _Cache(FunctionCache):
     it knows, which takes longer than to read what a run needs. Who compiles does so again.
     """
 
+    _impl_class = reading.Impl
+
+    def __init__(self, function):
+        super().__init__(function)
+        stamp = self._impl.locator.get_source_stamp()
+        self._cache_file = reading.File(self._cache_path, self._impl.filename_base, stamp)
+
     def load_overload(self, sig, target_context):
         """Return the compiled function of a signature, None where the cache has none."""
-        rtsys.initialize(target_context)  # memory of arrays, which the code on the disk calls
+        reading.know_memory()
         with without_scipy(), self._guard_against_spurious_io_errors():
-            found = self._load_overload(sig, target_context)
+            try:
+                found = self._load_overload(sig, target_context)
+            except Exception:  # damaged, or else it fails again
+                remove_damaged(Path(self.cache_path))
+                found = self._load_overload(sig, target_context)
             if found is None:
                 import numba.np.arraymath  # noqa: F401  (who compiles looks for SciPy there)
             return found
@@ -63,6 +73,24 @@ class _Cache(FunctionCache):
             return False
 
 
+class _Late:
+    """The cache of a function, made when it is asked for: most are compiled only within others."""
+
+    def __init__(self, function):
+        self._function = function
+
+    def __getattr__(self, name):
+        return getattr(self._made, name)
+
+    @cached_property
+    def _made(self):
+        try:
+            return _Cache(self._function)
+        except RuntimeError:  # Numba has no place to write to
+            _warn_once()
+            return NullCache()
+
+
 def cached_njit(*signature, **options):
     """Return Numba's ``njit`` with its cache, or without where nothing can be kept.
 
@@ -75,8 +103,7 @@ def cached_njit(*signature, **options):
         made = njit(**options)(_named_apart(function))
         if made is function:  # the JIT is off
             return made
-        if keeps(function):
-            made._cache = _Cache(function)
+        made._cache = _Late(function)
         for each in signature:
             made.compile(each)
         if signature:
@@ -89,8 +116,7 @@ def cached_njit(*signature, **options):
 def cached_cfunc(function, signature, **options):
     """Return what Numba's ``cfunc`` makes of a function, with its cache, as :func:`cached_njit`."""
     made = CFunc(_named_apart(function), normalize_signature(signature), {}, options)
-    if keeps(function):
-        made._cache = _Cache(function)
+    made._cache = _Late(function)
     made.compile()
     return made
 
@@ -116,27 +142,6 @@ def _told(value):
     if callable(function) and hasattr(function, "__qualname__"):
         return f"{function.__module__}.{function.__qualname__}"
     return repr(value)
-
-
-_seen: dict[str, bool] = {}
-
-
-def keeps(function) -> bool:
-    """Tell whether compiled code of a function's folder can be kept, once that is mended."""
-    room = os.path.dirname(function.__code__.co_filename)
-    if room not in _seen:
-        _seen[room] = numba.config.DISABLE_JIT or _mended(function)
-    return _seen[room]
-
-
-def _mended(function):
-    try:
-        folder = njit(cache=True)(function).stats.cache_path  # all functions of a room are there
-    except RuntimeError:  # Numba has no place to write to
-        _warn_once()
-        return False
-    remove_damaged(Path(folder))
-    return True
 
 
 def remove_damaged(folder: Path) -> None:

@@ -17,7 +17,7 @@ import numpy as np
 
 from rodsim.compiled.settings import machine
 from rodsim.errors import FileError
-from rodsim.output import layout
+from rodsim.output import layout, rows
 from rodsim.output.checkpoint import allocate
 from rodsim.output.h5md import describe
 from rodsim.output.layout import CLOCK, Plan
@@ -56,15 +56,10 @@ def build_file(path: Path, plan: Plan) -> h5py.File:
     return file
 
 
-def descriptor(file: h5py.File) -> int:
-    """Return the system's number of the open file."""
-    return file.id.get_vfd_handle()
-
-
 def trim(file: h5py.File) -> None:
     """Give back what was reserved and is not used."""
     file.flush()
-    os.ftruncate(descriptor(file), file.id.get_filesize())
+    os.ftruncate(rows.descriptor(file), file.id.get_filesize())
 
 
 def room(plan: Plan) -> int:
@@ -93,7 +88,7 @@ def _reserve(file, count):
     if not hasattr(os, "posix_fallocate"):
         return
     try:
-        os.posix_fallocate(descriptor(file), 0, count)
+        os.posix_fallocate(rows.descriptor(file), 0, count)
     except OSError as error:
         if error.errno not in (errno.EINVAL, errno.EOPNOTSUPP, errno.ENOSYS):
             raise
@@ -168,12 +163,12 @@ def _add_series(file, plan):
     frames = len(plan.times)
     file.create_group("particles", track_order=True)  # H5MD readers may take its first group
     clock = file.create_group(CLOCK)
-    preallocated(clock, "time", (frames,), np.nan)
-    preallocated(clock, "step", (frames,), -1, np.int64)
+    rows.make_room(clock, "time", (frames,), np.float64, np.nan)
+    rows.make_room(clock, "step", (frames,), np.int64, -1)
     clock["time"].attrs["units"] = unit_text(layout.TIME, plan.units)
     for series in plan.stored():
         group = file.require_group(series.where)
-        value = preallocated(group, "value", (frames, *series.shape), np.nan)
+        value = rows.make_room(group, "value", (frames, *series.shape), np.float64, np.nan)
         value.attrs["units"] = unit_text(series.dimension, plan.units)
         if series.name in plan.labels:
             value.attrs["rows"] = ", ".join(plan.labels[series.name])
@@ -187,11 +182,3 @@ def _add_runtime(group, device):
         group.attrs.create(name, layout.UNKNOWN[kind], dtype=text if kind is str else None)
     for name, value in (machine() | device).items():
         group.attrs.create(name, np.bytes_(value), dtype=text)
-
-
-def preallocated(group, name, shape, fill, dtype=np.float64) -> h5py.Dataset:
-    """Create a contiguous dataset of fixed size, allocated and filled at once."""
-    properties = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
-    properties.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
-    properties.set_fill_time(h5py.h5d.FILL_TIME_ALLOC)
-    return group.create_dataset(name, shape, dtype, fillvalue=dtype(fill), dcpl=properties)

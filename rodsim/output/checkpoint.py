@@ -13,7 +13,7 @@ import numpy as np
 
 from rodsim.errors import FileError
 from rodsim.output.guarded import GuardedFile
-from rodsim.output.rows import Rows
+from rodsim.output.rows import Rows, make_room
 
 SLOTS = ("a", "b")
 SEAL = "seal"
@@ -27,8 +27,8 @@ def allocate(group: h5py.Group, state: dict) -> None:
             raise ValueError(f"checkpoint: {name} cannot be stored")
     for slot in map(group.create_group, SLOTS):
         for name, array in arrays.items():
-            slot[name] = np.zeros_like(array)
-        slot[SEAL] = np.zeros(2, dtype=np.int64)
+            make_room(slot, name, array.shape, array.dtype)
+        make_room(slot, SEAL, (2,), np.int64)
 
 
 class CheckpointWriter:
@@ -38,9 +38,8 @@ class CheckpointWriter:
     """
 
     def __init__(self, group: h5py.Group):
-        self._file = group.file
-        slots = [group[name] for name in SLOTS]
-        self._slots = [{name: Rows(slot[name]) for name in slot} for slot in slots]
+        file, slots = group.file, [group[name] for name in SLOTS]
+        self._slots = [{name: Rows(file, f"{slot.name}/{name}") for name in slot} for slot in slots]
         self._serial = max(int(slot[SEAL][0]) for slot in slots)
         whole = [_whole_serial(slot) for slot in slots]
         self._turn = whole.index(min(whole))  # never over the newest whole one
@@ -55,10 +54,8 @@ class CheckpointWriter:
                 raise ValueError(f"checkpoint: {name} changed its shape or type")
         for name, array in arrays.items():
             slot[name].put_all(array)
-        self._file.flush()
         self._serial += 1
         slot[SEAL].put_all([self._serial, checksum(self._serial, arrays)])
-        self._file.flush()
         self._turn = 1 - self._turn
 
 

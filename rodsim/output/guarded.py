@@ -23,7 +23,7 @@ class GuardedFile:
     """
 
     def __init__(self, path):
-        self.path, self._last = Path(path), ("", None)
+        self.path, self._groups = Path(path), {}
         if not self.path.exists():
             raise FileError(f"{path}: no such file")
         try:
@@ -73,9 +73,7 @@ class GuardedFile:
 
     def attribute(self, name: str, key: str, kind: type, shape=()):
         """Return an attribute: ``kind`` is str, bool, int or float; an array if it has a shape."""
-        if self._last[0] != name:  # attributes are read one after another
-            self._last = name, self._node(name)
-        value = self._attribute(self._last[1], key)
+        value = self._attribute(self._node(name), key)
         if kind is str and isinstance(value, str):
             return value
         array = np.asarray(value)
@@ -122,7 +120,9 @@ class GuardedFile:
     def contiguous(self, name: str, kinds: str, shape) -> None:
         """Check a dataset that is to be written: in one piece, as the run has made it."""
         self.array(name, kinds, shape, np.s_[:0] if shape else ())
-        if self._dataset(name).chunks is not None:
+        data = self._dataset(name)
+        size = data.size * data.dtype.itemsize
+        if size and (data.id.get_offset() is None or data.id.get_storage_size() != size):
             raise self._laid_out_anew(name)
 
     def growing(self, name: str, kinds: str) -> None:
@@ -175,22 +175,26 @@ class GuardedFile:
             raise self.damaged(f"{name} {wrong}")
 
     def _node(self, name, kind=h5py.HLObject):
-        """Walk to an object link by link."""
+        """Walk to an object link by link; groups are kept open, since most things share theirs."""
         self._check_open()
-        node = self._file
+        node, path = self._file, ""
         try:
             for part in filter(None, name.split("/")):
-                link = node.get(part, getlink=True)
-                if link is None:
-                    raise self.damaged(f"{name} is missing")
-                if not isinstance(link, h5py.HardLink):
-                    raise self.damaged(f"{name} is a link to elsewhere")
-                node = node[part]
+                path += f"/{part}"
+                node = self._groups.get(path) or self._below(node, part, name)
+                if isinstance(node, h5py.Group):
+                    self._groups[path] = node
         except (KeyError, AttributeError, TypeError, OSError, RuntimeError, ValueError) as error:
             raise self.damaged(f"{name} is missing") from error
         if not isinstance(node, kind):
             raise self.damaged(f"{name} is not a {kind.__name__.lower()}")
         return node
+
+    def _below(self, node, part, name):
+        """Return what a group has of a name, where that is no link to elsewhere."""
+        if node.id.links.get_info(part.encode()).type != h5py.h5l.TYPE_HARD:
+            raise self.damaged(f"{name} is a link to elsewhere")
+        return node[part]
 
 
 def _case_hint(path):

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import glob
 import os
-import secrets
 from pathlib import Path
 
 from rodsim import kernel_locks
 from rodsim.errors import FileError
-from rodsim.files import has_hdf5_signature
+from rodsim.files import has_hdf5_signature, unforeseeable
 from rodsim.locks import Holder, NamedLock, holder
 
 
@@ -45,7 +44,7 @@ def temporary_name(path: Path) -> Path:
     """Return the name to build under; removes what killed builds left. The caller has the lock."""
     for leftover in path.parent.glob(f".{glob.escape(path.name)}.*.tmp"):
         leftover.unlink()
-    return path.with_name(f".{path.name}.{secrets.token_hex(8)}.tmp")
+    return path.with_name(f".{path.name}.{unforeseeable()}.tmp")
 
 
 def set_aside(path: Path) -> Path | None:

@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 
 from rodsim.output.layout import SURFACES, TRAJECTORY, Plan
-from rodsim.output.rows import Counter, put_number
+from rodsim.output.rows import Counter, Growing
 
 VERSION = (2, 0)
 CELLS = ("Vertices", "Lines", "Polygons", "Strips")  # VTK insists on all four
@@ -51,7 +51,7 @@ class View:
 
     def __init__(self, group: h5py.Group):
         self._file, self._values = group.file, group["Steps/Values"]
-        self._shown, self._steps = len(self._values), Counter(group["Steps"], "NSteps")
+        self._times, self._steps = Growing(self._values), Counter(group["Steps"], "NSteps")
 
     def count(self, frames: int) -> None:
         """Set the number of frames; to be on the disk before the last one is shown."""
@@ -59,20 +59,18 @@ class View:
 
     def show(self, index: int, time: float) -> None:
         """Show frame ``index``, which is on the disk, or correct its time."""
-        if index >= self._shown:
-            self._shown = index + 1
-            self._values.resize((self._shown,))
-        put_number(self._values, index, time)
+        self._times.put(index, time)
         self._file.flush()
 
     def show_all(self, times: np.ndarray) -> None:
         """Show exactly these frames, wherever a kill has left the view."""
-        self._shown = max(1, len(times))
-        self._values.resize((min(self._shown, len(self._values)),))
+        shown = max(1, len(times))
+        self._values.resize((min(shown, len(self._values)),))
         self.count(len(times))
         self._file.flush()
-        self._values.resize((self._shown,))
+        self._values.resize((shown,))
         self._values[:] = times if len(times) else 0.0
+        self._times = Growing(self._values)
         self._file.flush()
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from rodsim.errors import FileError
 from rodsim.files import reason_of
-from rodsim.output import build, layout
+from rodsim.output import layout, rows
 from rodsim.output.build import abandoned, build_file, trim
 from rodsim.output.checkpoint import CheckpointWriter
 from rodsim.output.layout import CLOCK, Plan
@@ -43,10 +43,11 @@ class TrajectoryWriter:
     def __init__(self, path: Path, file: h5py.File, plan: Plan, lock: OutputLock):
         self.path, self.times, self.renamed_to = path, plan.times, None
         self.committed = int(file["committed"][()])
-        self._file, self._plan, self._lock = file, plan, lock
-        self._values = {s.where: Rows(file[f"{s.where}/value"]) for s in plan.stored()}
-        self._time, self._step = Rows(file[f"{CLOCK}/time"]), Rows(file[f"{CLOCK}/step"])
-        self._counter, self._view = Rows(file["committed"]), View(file["VTKHDF"])
+        self._file, self._lock = file, lock
+        self._fields, self._observables = [*plan.fields_stored()], [*plan.observables_stored()]
+        self._values = [Rows(file, f"{s.where}/value") for s in plan.stored()]
+        self._time, self._step = Rows(file, f"{CLOCK}/time"), Rows(file, f"{CLOCK}/step")
+        self._counter, self._view = Rows(file, "committed"), View(file["VTKHDF"])
         self._checkpoint = CheckpointWriter(file["checkpoint"])
 
     @classmethod
@@ -118,14 +119,13 @@ class TrajectoryWriter:
         """
         if not 0 <= index <= self.committed or index >= len(self.times):
             raise ValueError(f"frame {index}: have {self.committed} of {len(self.times)}")
-        rows = {s.where: _row(s, fields, -1) for s in self._plan.fields_stored()}
-        rows |= {s.where: _row(s, observables, 0) for s in self._plan.observables_stored()}
+        values = [_row(series, fields, -1) for series in self._fields]
+        values += [_row(series, observables, 0) for series in self._observables]
         with self.writing() as file:
-            for where, row in rows.items():
-                self._values[where].put(index, row)
+            for place, row in zip(self._values, values, strict=True):
+                place.put(index, row)
             self._time.put(index, self.times[index])
             self._step.put(index, step)
-            file.flush()
             self._commit(file, index)
 
     def checkpoint(self, state: dict) -> None:
@@ -150,7 +150,7 @@ class TrajectoryWriter:
         """Wait until all that was written is on the disk: then it outlives a power cut as well."""
         with self.writing() as file:
             file.flush()
-            os.fsync(build.descriptor(file))
+            os.fsync(rows.descriptor(file))
 
     def finish(self, status: str, runtime: dict) -> None:
         """Set status and ``/runtime``, close the file, give back the lock. Once; then nothing."""
@@ -169,11 +169,11 @@ class TrajectoryWriter:
             self._lock.release()
 
     def _commit(self, file, index):
-        """Let the frame count; its data are written. Each flush keeps the order on the disk."""
+        """Let the frame count; its data are written. The flush keeps the order within the view."""
         committed = max(self.committed, index + 1)
-        self._counter.put_all(committed)
         self._view.count(committed)
         file.flush()
+        self._counter.put_all(committed)
         self.committed = committed
         self._view.show(index, self.times[index])
 
@@ -199,7 +199,7 @@ class TrajectoryWriter:
 
 def _gone(file):
     """Return what someone else has done to the file: removed, replaced or cut it; or nothing."""
-    found = os.fstat(build.descriptor(file))
+    found = os.fstat(rows.descriptor(file))
     if found.st_nlink == 0:
         return "was removed or replaced"
     return "was cut short" if found.st_size < file.id.get_filesize() else ""

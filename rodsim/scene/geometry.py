@@ -5,6 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
+from rodsim.vectors import cross
+
 WARN, REFUSE = 0.01, 0.2  # relative; of a tilt, its sine
 WARN_TILT = np.radians(1.0)
 SAME = 1e-6  # spacings: two points are one
@@ -43,7 +45,7 @@ class Geometry:
     def tilt_of(self, third, mean=True) -> np.ndarray:
         """Return the angles of some D^3 (3, M) to the chords; ``mean``: of those at both ends."""
         along = self._segments(third + np.roll(third, -1, axis=1) if mean else third)
-        across = np.linalg.norm(np.cross(along, self.chords, axis=0), axis=0)
+        across = np.linalg.norm(cross(along, self.chords), axis=0)
         return np.arctan2(across, np.sum(along * self.chords, axis=0))
 
     def _segments(self, values):

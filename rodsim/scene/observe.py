@@ -6,6 +6,7 @@ from rodsim.compiled.parts import FLOW, FORCE, HOLD, RELEASE, TRACERS
 from rodsim.scene.bodies import observe_nodes
 from rodsim.scene.evaluation import Evaluation
 from rodsim.scene.state import Scene, State
+from rodsim.vectors import cross
 
 
 class Observer:
@@ -103,5 +104,5 @@ class Observer:
 def _resultant(state, loads):
     """Return sum g and sum (X x g + m)."""
     force, torque = loads[:3], loads[3:]
-    arm = np.cross(state.position, force, axis=0)
+    arm = cross(state.position, force)
     return force.sum(axis=1), (arm + torque).sum(axis=1)

@@ -14,6 +14,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from rodsim.vectors import cross
+
 STEEPEST = 0.5  # of abs(d delta/ds): beyond it the triads do not follow what moves
 
 
@@ -74,11 +76,11 @@ def _turned_along(director, along):
     R v = v + a x v + a x (a x v)/(1 + D^3 . t), with a = D^3 x t and t the unit vector of along.
     """
     t = along / np.linalg.norm(along, axis=0)
-    axis, cos = np.cross(director[2], t, axis=0), (director[2] * t).sum(axis=0)
+    axis, cos = cross(director[2], t), (director[2] * t).sum(axis=0)
 
     def turn(v):
-        once = np.cross(axis, v, axis=0)
-        return v + once + np.cross(axis, once, axis=0) / (1.0 + cos)
+        once = cross(axis, v)
+        return v + once + cross(axis, once) / (1.0 + cos)
 
     return np.array([turn(director[0]), turn(director[1]), t])
 

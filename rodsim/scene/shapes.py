@@ -8,6 +8,7 @@ perturbed straight rod of (40)-(43): nearly).
 import numpy as np
 
 from rodsim.scene.arcs import equal_arcs
+from rodsim.vectors import cross
 
 
 def straight(shape):
@@ -47,7 +48,7 @@ def helix(shape):
     position = np.array([shape.radius * cos, shape.radius * sin, rise * angle])
     tangent = np.array([-shape.radius * sin, shape.radius * cos, rise * one]) / stride
     outward = np.array([cos, sin, 0.0 * one])
-    return position, np.array([np.cross(outward, tangent, axis=0), outward, tangent])
+    return position, np.array([cross(outward, tangent), outward, tangent])
 
 
 def _tapered_helix(shape):
@@ -76,9 +77,9 @@ def _tapered_helix(shape):
     up = np.array([zero, zero, np.copysign(one, shape.pitch)])
     position = radius(x) * outward + x * up
     tangent = (growth(x) * outward + k * radius(x) * around + up) / speed(x)
-    first = np.cross(outward, tangent, axis=0)
+    first = cross(outward, tangent)
     first /= np.linalg.norm(first, axis=0)
-    return position, np.array([first, np.cross(tangent, first, axis=0), tangent])
+    return position, np.array([first, cross(tangent, first), tangent])
 
 
 def sine(shape):
@@ -99,7 +100,7 @@ def sine(shape):
     position = np.array([zero, shape.amplitude * np.sin(k * z + shape.phase), z])
     tangent = np.array([zero, slope(z), one]) / np.hypot(slope(z), 1.0)
     first = np.array([one, zero, zero])
-    return position, np.array([first, np.cross(tangent, first, axis=0), tangent])
+    return position, np.array([first, cross(tangent, first), tangent])
 
 
 def place(position, director, shape):

@@ -1,6 +1,7 @@
 """The file after a crash at any point of its writing: every write replayed, whole and torn.
 
-The writer runs on a file object that logs what HDF5 writes, and where. The file is then rebuilt
+The writer runs on a file object that logs what HDF5 writes, and where, and so are the writes past
+HDF5. The file is then rebuilt
 write by write, as a crash would leave it, and each time everything that was acknowledged must be
 there: the frames, the view of ParaView, a checkpoint.
 """
@@ -11,13 +12,14 @@ from contextlib import contextmanager
 import h5py
 import numpy as np
 import pytest
-from outputs import TIMES, create, frame
+from outputs import TIMES, frame, make_plan
 
 from rodsim import open_trajectory
 from rodsim.errors import FileError
-from rodsim.output import build, reopen
+from rodsim.output import build, reopen, rows
 from rodsim.output.layout import FIELDS
 from rodsim.output.paths import OutputLock
+from rodsim.output.writer import TrajectoryWriter
 
 
 class Logged:
@@ -58,8 +60,13 @@ def logging(monkeypatch, log):
         def __getattr__(self, name):
             return getattr(h5py, name)
 
+    def write_at(handle, data, offset, write=rows.write_at):
+        log.append((offset, bytes(data)))
+        write(handle, data, offset)
+
     with monkeypatch.context() as patch:
-        patch.setattr(build, "descriptor", lambda file: streams[-1].fileno())
+        patch.setattr(rows, "descriptor", lambda file: streams[-1].fileno())
+        patch.setattr(rows, "write_at", write_at)
         patch.setattr(build, "h5py", Fake())
         patch.setattr(reopen, "h5py", Fake())
         yield
@@ -77,9 +84,9 @@ def record(path, monkeypatch, times, restart):
 
     Marks in the log: ("frame", n) and ("state", n) say what has been acknowledged before.
     """
-    log, plan = [], {"times": times, "checkpoint": state(0)}
+    log, plan = [], make_plan(times=times, checkpoint=state(0))
     with logging(monkeypatch, log):
-        writer = create(path, **plan)
+        writer = TrajectoryWriter.create(path, plan)
         start = path.read_bytes()
         log.clear()
         for index in range(len(times)):
@@ -88,7 +95,7 @@ def record(path, monkeypatch, times, restart):
                 writer._lock.release()
                 lock = OutputLock(path)
                 lock.acquire()
-                writer = reopen.reopen(path, writer._plan, lock)
+                writer = reopen.reopen(path, plan, lock)
                 reopen.note_resume(writer, "once more")
                 # the frame before is written again, as after a checkpoint that came before it
                 writer.write_frame(index - 1, 10 * index - 8, *frame(index - 1))
@@ -185,8 +192,6 @@ def test_every_frame_survives_a_crash_at_every_write_of_a_longer_run(tmp_path, m
 
 def test_the_replay_sees_a_frame_that_is_claimed_too_early(tmp_path, monkeypatch):
     """The test of the test: a counter that is raised before the data is found out."""
-    from rodsim.output.writer import TrajectoryWriter
-
     write, commit = TrajectoryWriter.write_frame, TrajectoryWriter._commit
 
     def early(writer, index, *rest):

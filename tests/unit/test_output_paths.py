@@ -256,12 +256,13 @@ def test_where_the_system_has_no_locks_the_words_of_a_lock_count(
 
 
 def test_a_file_that_is_replaced_is_built_where_nobody_has_put_a_link(tmp_path, monkeypatch):
-    monkeypatch.setattr("secrets.token_hex", lambda count: "guessed")
+    monkeypatch.setattr("os.urandom", lambda count: b"guessed!")
+    guessed = b"guessed!".hex()
     (tmp_path / "precious").write_text("kept")
-    (tmp_path / ".table.guessed.csv").symlink_to("precious")
+    (tmp_path / f".table.{guessed}.csv").symlink_to("precious")
     with pytest.raises(FileError, match=r"table.csv: cannot be written"):
         write_csv(tmp_path / "table.csv", ["a"], [])
-    (tmp_path / ".out.h5.guessed.tmp").symlink_to("precious")
+    (tmp_path / f".out.h5.{guessed}.tmp").symlink_to("precious")
     monkeypatch.setattr("pathlib.Path.glob", lambda *_: [])  # it comes after we have looked
     with pytest.raises(FileError, match=r"out.h5: cannot be written"):
         create(tmp_path / "out.h5")

@@ -48,6 +48,19 @@ main()
 """
 
 
+PLUGINS = """
+import sys
+sys.argv = ["rodsim", "validate", sys.argv[1]]
+from rodsim.__main__ import main
+try:
+    main()
+finally:
+    left_out = "importlib.metadata" not in sys.modules
+    from pydantic.plugin._loader import PYDANTIC_ENTRY_POINT_GROUP, get_plugins
+    print(left_out, PYDANTIC_ENTRY_POINT_GROUP, list(get_plugins()))
+"""
+
+
 def said_by(code, *arguments):
     command = [sys.executable, "-c", code, *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -77,6 +90,12 @@ def test_an_output_is_described_without_what_reads_a_case(tmp_path):
         write(writer, range(3))
         writer.finish("finished", {})
     assert said_by(INFO, tmp_path / "out.h5").splitlines() == ["True", "[]"]
+
+
+def test_plugins_of_pydantic_are_not_looked_for():
+    """And the module that does so is still there for who asks it for anything else."""
+    said = said_by(PLUGINS, CONFIGS / "closed_ring.yaml")
+    assert said.splitlines()[-1] == "True pydantic []"
 
 
 @pytest.mark.compiled

@@ -14,7 +14,7 @@ from outputs import CASE, POINTS, RODS, TIMES, TRACERS, UNITS, create, frame, wr
 from rodsim.compiled.settings import machine
 from rodsim.errors import FileError
 from rodsim.nodes import Rod, Rods
-from rodsim.output import build, open_trajectory
+from rodsim.output import build, open_trajectory, rows
 from rodsim.output.layout import FIELDS
 
 
@@ -261,12 +261,13 @@ def test_an_absurd_size_is_refused_at_once(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_write_that_fails_says_what_is_safe(tmp_path, monkeypatch):
+@pytest.mark.parametrize("call", [(h5py.File, "flush"), (rows, "write_at")])
+def test_a_write_that_fails_says_what_is_safe(tmp_path, monkeypatch, call):
     with create(tmp_path / "out.h5") as writer:
         write(writer, range(3))
         file = writer._file
         with monkeypatch.context() as broken:
-            broken.setattr(h5py.File, "flush", full)
+            broken.setattr(*call, full)
             with pytest.raises(FileError, match=r"out.h5: .*No space.* first 3 frames are safe"):
                 write(writer, [3])
         with pytest.raises(FileError, match="closed"):

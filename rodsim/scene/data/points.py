@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import zipfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -148,6 +147,8 @@ def _xyz(path, frame):
 
 def _from_npz(path, triads, frame, rod):
     """Read an export of rodsim: positions (T, N, 3), triads (T, N, 3, 3), the rods' tables."""
+    import zipfile  # few cases have such a file
+
     try:
         with np.load(path, allow_pickle=False) as file:
             _check_sizes(path)
@@ -171,6 +172,8 @@ def _from_npz(path, triads, frame, rod):
 
 
 def _check_sizes(path):
+    import zipfile
+
     with zipfile.ZipFile(path) as file:
         for member in file.infolist():
             if member.file_size > MOST_BYTES:
