@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from time import perf_counter
 
 import numpy as np
 
 from rodsim.analysis.difference import position_errors, triad_angle
+from rodsim.convergence.twin import end_of_twin
 from rodsim.errors import StepFailure
 from rodsim.forces.elastic import ENERGIES
 from rodsim.run.machine import Machine
@@ -21,7 +22,8 @@ class Outcome:
 
     ``velocity`` (3,): mean velocity of the centroid of all rods over the run, length/time;
     ``energies``: elastic energy at both ends. ``seconds``: each repeat of the solve, without
-    compiling and output; ``pairs``: of a target and a source, in one evaluation.
+    compiling and output; ``pairs``: of a target and a source, in one evaluation; ``twin``: the end
+    of the same steps of rkc from a start that differs in the last bit, where it was asked for.
     """
 
     scene: Scene
@@ -32,6 +34,7 @@ class Outcome:
     evaluations: int
     steps: int
     rejected: int
+    twin: State | None = None
 
     @property
     def best(self) -> float:
@@ -72,24 +75,26 @@ class Errors:
 
 
 def solve(
-    case, threads=None, repeats=1, enough=0.1, progress=lambda fraction: None, nudged=False
+    case, threads=None, repeats=1, enough=0.05, progress=lambda fraction: None, twin=False
 ) -> Outcome:
     """Run a case to its end without an output; again until ``repeats`` or ``enough`` seconds:
     what takes longer is hardly changed by what else the machine does.
 
-    ``nudged``: from a start that differs in the last bit. Raises DivergedError as ``simulate``
-    does.
+    ``twin``: of rkc, also from a start that differs in the last bit. Raises DivergedError as
+    ``simulate`` does.
     """
     scene, seconds = build_scene(case), []
-    if nudged:
-        scene = replace(scene, initial=_nudged(scene))
     while len(seconds) < repeats and (not seconds or sum(seconds) < enough):
         machine = Machine(case, scene, force=False)
         with machine.threads(threads):
             _ = machine.limits  # a run begins with it: its steps then know the fastest rate
             begin = perf_counter()
-            end = _march(machine, case.time.end, progress)
+            end, taken = _march(machine, case.time.end, progress)
             seconds.append(perf_counter() - begin)
+    count, other = machine.system.evaluations, None
+    if twin:
+        with machine.threads(threads):
+            other = end_of_twin(machine, taken, case.time.end)
     system, integrator, initial = machine.system, machine.integrator, scene.initial
     points = slice(scene.rods.points)
     drift = (end.position - initial.position)[:, points].mean(axis=1)
@@ -99,35 +104,24 @@ def solve(
         velocity=drift / case.time.end,
         energies=(_energy(system, initial), _energy(system, end)),
         seconds=tuple(seconds),
-        evaluations=system.evaluations,
+        evaluations=count,
         steps=integrator.accepted,
         rejected=integrator.rejected,
+        twin=other,
     )
 
 
-def _nudged(scene):
-    """Return the initial state, every coordinate changed by what rounding leaves uncertain in it.
-
-    That is the last bit of a number as large as the longest rod: of a coordinate that is 0 by
-    symmetry, rounding leaves as much.
-    """
-    initial = scene.initial
-    signs = np.random.default_rng(2013).choice([-1.0, 1.0], initial.position.shape)
-    if scene.planar:
-        signs[0] = 0.0
-    return replace(initial, position=initial.position + signs * np.spacing(scene.length_scale))
-
-
 def _march(machine, end, progress):
-    state = machine.system.scene.initial
+    state, integrator, taken = machine.system.scene.initial, machine.integrator, []
     try:
-        for step in machine.integrator.steps(state, end):
+        for step in integrator.steps(state, end):
             machine.watch.check(step)
             state = step.end
+            taken.append((step.size, integrator.fastest_rate))
             progress(state.time / end)
     except StepFailure as failure:
-        machine.watch.stop(failure, machine.integrator.accepted + 1)
-    return state
+        machine.watch.stop(failure, integrator.accepted + 1)
+    return state, taken
 
 
 def _energy(system, state):

@@ -16,8 +16,8 @@ TIMED = ("tolerance", "step")
 class Part:
     """The rows of a section; the first is the reference, which ``words`` describe.
 
-    ``check``: tells how good that is; ``twin``: made again from a start that differs in the last
-    bit; ``stretch``: what rows that are not run to the end are held against.
+    ``check``: tells how good that is; ``twin``: its steps are taken again from a start that
+    differs in the last bit; ``stretch``: what rows that are not run to the end are held against.
     """
 
     axis: str
@@ -29,7 +29,7 @@ class Part:
 
     @property
     def all_rows(self) -> list[Row]:
-        """Every run of it but that of the twin's other start."""
+        """Every run of it."""
         more = [self.check, self.twin]
         if self.stretch:
             more += [self.stretch.reference, self.stretch.guide_part]
@@ -79,7 +79,6 @@ def _time(case, limits, timed, whole):
             fixed, stretch = shorten_costly(fixed, reference, case)
         found += fixed
     words = f"rkc at tolerance {reference.value:g}, held against tolerance {check.value:g}"
-    # A last bit may change which steps are taken: beside the check's own error that is little.
     return Part("time", words, [reference, *found], check, twin=check, stretch=stretch)
 
 

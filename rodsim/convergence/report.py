@@ -63,7 +63,7 @@ def _section(study, section):
     own = "" if section.own is None else f": good to {section.own.position:.1e} {unit}"
     yield f"reference: {section.reference}{own}"
     if section.amplified:
-        apart = f"{section.rounding.position:.1e} {unit}"
+        apart = f"{section.rounding:.1e} {unit}"
         yield f"no bound: rounding is amplified, starts a last bit apart end {apart} apart"
     yield f"largest and rms distance in {unit}, {_clock(study)}; energy over the larger of its"
     yield "first and last value, speed over itself; ~: no larger than what the reference may err"
@@ -162,7 +162,7 @@ class CsvRows:
     def add(self, section: Section, result: Result) -> None:
         """Write one row."""
         e, run = result.errors, result.outcome
-        known = ["" if e is None else e.position for e in (section.own, section.rounding)]
+        known = [section.own.position if section.own else "", _cell(section.rounding)]
         *errors, tracers = [""] * 7 if e is None else [_cell(x) for x in vars(e).values()]
         cost = [""] * 7
         if run is not None:

@@ -14,6 +14,9 @@ EXACT = 0.0
 TOLERANCES = tuple(10.0 ** (k / 2) for k in range(4, -5, -1))  # times the case's own
 REFERENCE, CHECK = 1e-4, 1e-3  # of the case's tolerance
 TIGHTEST = 1e-12
+STEPS = 6.0  # in which the time gone grows by e, at a tolerance of 1e-4
+UNEVEN = 0.8
+ESTIMATES = 45.0  # evaluations, of the fastest rate before the first step
 SPACE_TOLERANCE = 1e-6  # in a study of space no error in time is to be seen
 PARTS = 20  # of a run: many steps lead to the end of the first of them, too (``stretch``)
 MANY = 50 * PARTS  # steps: there it makes a step smaller by at most 2 per cent
@@ -52,9 +55,20 @@ def rkc(tolerance: float) -> tuple[str, ...]:
 
 
 def guess(case, rate: float, tolerance: float) -> float:
-    """Guess the evaluations of rkc: sqrt(T rho N/0.65) for N steps, order 3 in the step."""
-    steps = 90.0 * (1e-4 / tolerance) ** 0.25
-    return math.sqrt(case.time.end * rate * steps / 0.65) + 4.0 * steps
+    """Guess the evaluations of rkc, mostly to a factor of 2.
+
+    What comes to rest takes steps that grow with the time gone: as many as ln(1 + T rho), of fewer
+    stages than even ones. What is driven, some for each that the drive makes anyway. Their number
+    is that of the shipped scenes.
+    """
+    # Here, since the command asks for AXES before Numba has its settings.
+    from rodsim.integrators.rkc import FEWEST_STAGES, RATE_SAFETY, stages_for
+
+    end, drive = case.time.end, case.time.end / case.max_step_size
+    steps = max(STEPS * math.log1p(end * rate), drive) * (1e-4 / tolerance) ** 0.25
+    steps = max(steps, drive, 1.0)
+    stages = stages_for(end / steps, RATE_SAFETY * rate) * (1.0 if drive else UNEVEN)
+    return ESTIMATES + steps * max(FEWEST_STAGES, stages)
 
 
 def tolerance_rows(case, rate) -> list[Row]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
+from rodsim.analysis.difference import position_errors
 from rodsim.convergence import rows
 from rodsim.convergence.outcome import Errors, Outcome, compare
-from rodsim.convergence.plan import plan
+from rodsim.convergence.plan import TIMED, plan
 from rodsim.convergence.rows import Row
 from rodsim.convergence.side_by_side import REFUSED, Runs
 from rodsim.convergence.stretch import grown, to_the_end
@@ -17,11 +19,11 @@ from rodsim.scene.build import build_scene
 from rodsim.scene.inputs import SAME, case_digests, compare_inputs
 from rodsim.scene.system import RodSystem
 
+CLOCKED = (*TIMED, "accuracy")  # axes whose seconds are to be compared
 REPEATS = 3
 BESIDE = 50_000  # pairs that all but the sums takes as long as, in an evaluation
 ROUNDING = 1e-12  # of the longest rod: what a last bit is after a stable run
-AMPLIFIED = 0.3  # of the reference's own error: rounding is then part of it. A last bit that
-# changes which steps are taken came to 0.11 of it on the ring, where it grows only 400 times.
+AMPLIFIED = 0.3  # of the reference's own error: rounding is then part of it
 DONE = ""
 
 
@@ -39,26 +41,28 @@ class Result:
 class Section:
     """One axis: its reference, in words and with its own error, and the rows so far.
 
-    ``rounding``: how far two runs end from each other that differ in the last bit of their start.
+    ``rounding``: how far the same steps end from each other from starts that differ in the last
+    bit; ``length``: of the longest rod.
     """
 
     axis: str
     reference: str
     own: Errors | None = None
-    rounding: Errors | None = None
+    rounding: float | None = None
+    length: float = math.inf
     results: list[Result] = field(default_factory=list)
 
     @property
     def floor(self) -> float:
         """Position error below which nothing can be told: the reference's own, or rounding's."""
-        return max((e.position for e in (self.own, self.rounding) if e), default=0.0)
+        return max(self.own.position if self.own else 0.0, self.rounding or 0.0)
 
     @property
     def amplified(self) -> bool:
         """Whether rounding alone moves the end so far that ``own`` is no bound."""
-        if not (self.own and self.rounding) or self.rounding.relative < ROUNDING:
+        if not (self.own and self.rounding) or self.rounding < ROUNDING * self.length:
             return False
-        return self.rounding.position > AMPLIFIED * self.own.position
+        return self.rounding > AMPLIFIED * self.own.position
 
 
 class Study:
@@ -86,7 +90,7 @@ class Study:
         for row in [row for part in parts for row in part.all_rows]:
             self._ask(row)
         for row in {part.twin for part in parts if part.twin}:
-            self._ask(row, nudged=True)
+            self._ask(row, twin=True)
         with self._runs:
             for part in parts:
                 yield from self._section(part)
@@ -96,7 +100,7 @@ class Study:
         """How many runs go on at once."""
         return self._runs.side_by_side
 
-    def _ask(self, row, nudged=False):
+    def _ask(self, row, twin=False):
         """Ask for the run of a row; of one that cannot be, remember in words why not."""
         own = f"fluid.epsilon={self.scene.epsilon!r}"  # so that rows with the same case know it
         try:
@@ -105,9 +109,9 @@ class Study:
             self._cases[row] = f"{REFUSED}: {error.problems[0].reason}"
             return
         self._cases[row] = case
-        repeats = 1 if nudged or row.axis in ("time", "own") else REPEATS
+        repeats = REPEATS if row.axis in CLOCKED else 1
         label = f"{row.method} {row.axis} {row.value:g}"
-        self._runs.ask(label, case, self._weight(row), nudged, repeats)
+        self._runs.ask(label, case, self._weight(row), twin, repeats)
 
     def _section(self, part):
         """Yield the rows of a part, each held against its reference."""
@@ -115,7 +119,7 @@ class Study:
         reference = self._outcome(first)
         if not isinstance(reference, Outcome):
             raise UsageError(f"{part.axis}: the reference ({part.words}) is {reference}")
-        section = Section(part.axis, part.words)
+        section = Section(part.axis, part.words, length=reference.scene.length_scale)
         self.sections.append(section)
         # How good it is: beside the next best run, and what rounding does.
         if part.check:
@@ -132,8 +136,10 @@ class Study:
             yield section, result
 
     def _rounding(self, row):
-        pair = [self._outcome(row), self._outcome(row, nudged=True)]
-        return compare(*pair) if all(isinstance(run, Outcome) for run in pair) else None
+        run = self._outcome(row)
+        if not isinstance(run, Outcome):
+            return None
+        return position_errors(run.twin.position, run.end.position)[0]
 
     def _result(self, part, row, reference):
         found = self._outcome(row)
@@ -155,12 +161,12 @@ class Study:
         at_end, then = compare(guide, reference), compare(guide_part, exact)
         return Result(row, to_the_end(run, row, guide), grown(compare(run, exact), then, at_end))
 
-    def _outcome(self, row, nudged=False):
+    def _outcome(self, row):
         """Return the outcome of a row, or in words why there is none."""
         case = self._cases[row]
         if isinstance(case, str):
             return case
-        found = self._runs.outcome(case, nudged)
+        found = self._runs.outcome(case)
         self._same_inputs(case)
         return found
 

@@ -18,6 +18,18 @@ import numpy as np
 
 MEMORY = 0.5  # 0: unstable where steps grow by a quarter; 1: more errors of stiff modes, and lag
 TREND = 0.3  # share of the change of y''' that is carried on; 0.5 can be unstable
+MOST_GROWTH = 3.0
+GROWN = 0.6  # tolerances that growth may add to the error of a step
+
+
+def most_growth(uncorrected: float) -> float:
+    """Return the ratio r of sizes by which a step may grow.
+
+    ``uncorrected`` : C h^3 y''' of the step before, in tolerances. Corrected as much as that one
+    (``Defect.correction``), the step errs by C h^3 y''' (r^3 - 1) more than one of the same size:
+    at tight tolerances far more than what a corrected step leaves.
+    """
+    return min(MOST_GROWTH, (1.0 + GROWN / max(uncorrected, 1e-10)) ** (1.0 / 3.0))
 
 
 class Defect:

@@ -14,7 +14,7 @@ import numpy as np
 
 from rodsim.case.methods import METHODS
 from rodsim.errors import StepFailure
-from rodsim.integrators.defect import Defect
+from rodsim.integrators.defect import Defect, most_growth
 from rodsim.integrators.fastest_rate import FastestRate
 from rodsim.integrators.step import Step
 from rodsim.scene.state import State
@@ -23,7 +23,7 @@ from rodsim.scene.system import RodSystem, Trial
 DAMPING = 2.0 / 13.0
 SAFETY = 0.8
 FILTER = 4.0  # b of the filter H211b: larger is smoother
-MOST_GROWTH = 3.0
+GROWTH_AT_FIRST = 10.0
 RATE_SAFETY = 1.1  # the estimate comes from below
 MOST_SHARE = 0.9  # of what the parts let a step do: the next one is made for that
 FEWEST_STAGES = 4  # with fewer, nonlinear terms have an error constant of their own
@@ -171,7 +171,7 @@ class RKC:
             trial = self.attempt(state, f0, size)
             error, share = trial.error / self.tolerance, self.system.guarded(trial.increment)
             if error <= 1.0 and share <= 1.0:
-                self._grow(size, error)
+                self._grow(size, error, trial.third)
                 self._size = min(self._size, size * MOST_SHARE / max(share, 1e-10))
                 return size, trial
             self.rejected += 1
@@ -181,14 +181,14 @@ class RKC:
                 raise StepFailure(f"no step is accepted, down to a size of {self._size:.2g}", state)
             self._estimate_rate(state, f0)
 
-    def _grow(self, size, error):
+    def _grow(self, size, error, third):
         """Choose the next size by the filter H211b from the last two sizes and errors.
 
         The first step is not corrected and errs more than those that follow it, so the second may
         be far longer. The step after a rejection does not grow: growth itself leaves an error,
         what the correction does not follow, and a step grown at once is often rejected again.
         """
-        error, most = max(error, 1e-10), MOST_GROWTH if self.accepted else 10.0
+        error = max(error, 1e-10)
         factor = SAFETY * error**-0.25
         if self._previous is None and self.accepted > 1:
             factor = min(1.0, factor)
@@ -196,8 +196,21 @@ class RKC:
             before_size, before = self._previous
             both = (SAFETY**8 / (error * before)) ** (0.25 / FILTER)
             factor = both * (size / before_size) ** (-1.0 / FILTER)
+        if factor > 1.0:
+            factor = min(factor, self._most_growth(size, third))
         self._previous = (size, error) if self.accepted else None
-        self._size = size * min(most, max(0.1, factor))
+        self._size = size * max(0.1, factor)
+
+    def _most_growth(self, size, third):
+        if not self.accepted:
+            return GROWTH_AT_FIRST
+        c = error_constant(stages_for(size, self.fastest_rate))
+        return most_growth(c * size**3 * self._norm(third) / self.tolerance)
+
+    def _norm(self, vector):
+        """Return a norm over all rods at once: a guess of that over each."""
+        n, w = self.system.rod_size, self.system.weights
+        return np.sqrt(np.mean(np.square(vector[:n] * w[:n])))
 
     def _limited(self, left):
         """Return the size to try: never a sliver before the end, never too many stages."""
@@ -230,8 +243,7 @@ class RKC:
         """Return a first step from the change of the rate over a step of 1/rho."""
         trial = min(1.0 / self.fastest_rate, end)
         f1 = self.system.rate(state.time + trial, state, trial * f0, self.system.zeros())
-        n, w = self.system.rod_size, self.system.weights  # a guess: one norm over all rods will do
-        change = trial * np.sqrt(np.mean(np.square((f1 - f0)[:n] * w[:n]))) / self.tolerance
+        change = trial * self._norm(f1 - f0) / self.tolerance
         if not math.isfinite(change):  # as where even the trial comes to a wall
             return 0.1 * trial
         return min(end, 0.1 * trial / math.sqrt(change) if change > 0.0 else end)

@@ -194,11 +194,11 @@ def number_text(value: float) -> str:
     """Return a tick's number as it is written: plain from 0.001 to 50 000, else by powers of ten.
 
     >>> number_text(0.02), number_text(1e-6), number_text(2e5)
-    ('0.02', '$10^{-6}$', '$2\\\\times10^{5}$')
+    ('0.02', '10⁻⁶', '2×10⁵')
     """
     if 1e-3 <= value < 1e5:
         return f"{value:.6g}"
     power = int(np.floor(np.log10(value) + 1e-9))
     factor = round(value / 10.0**power)
-    times = "" if factor == 1 else rf"{factor}\times"
-    return f"${times}10^{{{power}}}$"
+    times = "" if factor == 1 else f"{factor}×"
+    return f"{times}{style.power_of_ten(power)}"

@@ -58,7 +58,7 @@ class Look:
         shapes = Shapes(
             run.time[chosen], position, director, run.rods, painted, tracers, run.units,
             thickness(run, self.radius), kind, run.wall, self.directors * ARROW * longest(run),
-            surfaces, triangles,
+            surfaces, triangles, _modes(run, chosen),
         )  # fmt: skip
         return camera, shapes, key
 
@@ -86,6 +86,13 @@ class Look:
         scale = colours.scale_of(values, colour, f"{run.units['length']}^-1", self.limits)
         painted = [scale(value) for value in values]
         return [[of_rod[frame] for of_rod in painted] for frame in range(len(chosen))], scale
+
+
+def _modes(run, chosen):
+    """Return what frames of ``rodsim stability`` are called, whose times count modes, else None."""
+    if "mode_stiffness" not in run.observables:
+        return None
+    return tuple(f"mode {time:.0f}" if time else "at rest" for time in run.time[chosen])
 
 
 def _named(of_rods):

@@ -30,6 +30,7 @@ class Shapes:
     units : names of the units of ``length`` and ``time``. size : diameter or width of the rods.
     wall : height of a wall, or None. arrows : length of D^1 and D^2 drawn as arrows, 0 for none.
     surfaces : of bodies, (T, S, 3), and triangles (F, 3) between their points; or None.
+    names : of the frames, in place of their times; or None.
     """
 
     time: np.ndarray
@@ -45,6 +46,7 @@ class Shapes:
     arrows: float = 0.0
     surfaces: np.ndarray | None = None
     triangles: np.ndarray | None = None
+    names: tuple[str, ...] | None = None
 
     def draw(self, axis, camera: Camera, frame: int):
         """Draw one frame on an axis that has its limits; return the axis."""
@@ -76,7 +78,9 @@ class Shapes:
         return np.concatenate([points[frame].reshape(-1, 3) for points in shown])
 
     def stamp(self, frame: int) -> str:
-        """Return the time of a frame with its unit."""
+        """Return the name of a frame, or its time with its unit."""
+        if self.names:
+            return self.names[frame]
         return f"t = {self.time[frame]:.4g} {style.pretty_unit(self.units['time'])}"
 
     def narrowest(self) -> float:

@@ -18,7 +18,8 @@ LOOK = {  # 8 to 9 points, as journals ask for; TrueType, as they do in .pdf
     "font.size": 9.0, "axes.titlesize": 9.0, "axes.labelsize": 9.0, "figure.titlesize": 10.0,
     "figure.labelsize": 9.0, "xtick.labelsize": 8.0, "ytick.labelsize": 8.0,
     "legend.fontsize": 8.0, "axes.linewidth": 0.8, "pdf.fonttype": 42,
-    "axes.formatter.limits": (-3, 4),
+    "axes.formatter.limits": (-3, 4), "figure.autolayout": False,
+    "figure.constrained_layout.use": False,
 }  # fmt: skip
 SLACK = 0.015  # inches: the antialiased edge of a letter
 PAD = 0.04  # inches around what is drawn
@@ -77,6 +78,15 @@ def pretty_unit(unit: str) -> str:
     return " ".join(words)
 
 
+def power_of_ten(power: int) -> str:
+    """Return a power of ten as people write it; letters, for a formula is slow to draw.
+
+    >>> power_of_ten(-6)
+    '10⁻⁶'
+    """
+    return f"10{str(power).translate(_SUPERSCRIPTS)}"
+
+
 def label(quantity: str, unit: str) -> str:
     """Return the text of an axis: the quantity and, where it has one, its unit."""
     return quantity if unit in ("", "1") else f"{quantity} ({pretty_unit(unit)})"
@@ -106,16 +116,17 @@ def styled(draw):
 
 def save(figure, path, dpi=RASTER_DPI) -> None:
     """Write a figure as .png, .pdf or .svg, whole or not at all; raises FileError."""
-    if not all(map(_stretches, figure.axes)):  # else savefig's own layout will do: it takes long
-        settle(figure)
+    figure.set_dpi(dpi)  # letters are as wide as they will be
+    settle(figure)
+    figure.set_layout_engine(None)  # with one, even "none", savefig draws all twice
     with replacing(path) as temporary, drawing(path):
         figure.savefig(temporary, dpi=dpi)
 
 
 def settle(figure) -> None:
-    """Lay a figure out twice: axes of equal scales are moved after the first time."""
+    """Lay a figure out, twice where axes have equal scales: they are moved after the first time."""
     if layout := figure.get_layout_engine():
-        for _ in range(2):
+        for _ in range(1 if all(map(_stretches, figure.axes)) else 2):
             layout.execute(figure)
 
 
@@ -188,9 +199,8 @@ def name_values(axis, quantity: str, unit: str) -> None:
     formatter.set_powerlimits((power, power))
     axis.yaxis.set_major_formatter(formatter)
     axis.yaxis.offsetText.set_visible(False)
-    ten = f"10{str(power).translate(_SUPERSCRIPTS)}"
     plain = "" if unit in ("", "1") else f" {pretty_unit(unit)}"
-    axis.set_ylabel(f"{quantity} ({ten}{plain})")
+    axis.set_ylabel(f"{quantity} ({power_of_ten(power)}{plain})")
 
 
 def share_of_page(figure) -> float:

@@ -10,6 +10,7 @@ from rodsim.plotting.colours import Scale
 
 FRAME, BAR, LINE = 0.5, 0.9, 0.18  # inches below a tilted view, of a colour bar, of a line of text
 COMPASS, SCALE = 0.46, 1.1  # inches of the sides of the compass, right of it of a scale bar
+SHORT = 0.7  # lengths of an arrow in the page: nearer to the middle there is no room for a letter
 ROW = 1.0  # inches of a row of panels that has room for a label
 TICK = 0.45, 0.3  # inches of an axis for each number below it, beside it
 
@@ -60,11 +61,26 @@ def draw_compass(figure, camera: Camera):
     axis.set_axis_off()
     axis.set_xlim(-1.5, 1.5)
     axis.set_ylim(-1.5, 1.5)
-    for name, (right, up, _) in zip(AXES, camera.matrix.T, strict=True):
+    arrows = camera.matrix[:2].T
+    for name, (right, up), letter in zip(AXES, arrows, _letters(arrows), strict=True):
         arrow = {"arrowstyle": "->", "color": "0.2", "lw": 1.0, "shrinkA": 0, "shrinkB": 0}
         axis.annotate("", (right, up), xytext=(0, 0), arrowprops=arrow)
-        axis.text(1.4 * right, 1.4 * up, name, ha="center", va="center", fontsize=8, color="0.2")
+        axis.text(*letter, name, ha="center", va="center", fontsize=8, color="0.2")
     return axis
+
+
+def _letters(arrows):
+    """Return where the names of arrows stand: before their tips, or where that is at the middle,
+    as of one that points out of the page, on that side of it which is farther from the others.
+    """
+    places = 1.4 * arrows
+    for k, arrow in enumerate(arrows):
+        length, others = np.hypot(*arrow), np.delete(places, k, axis=0)
+        if 1.4 * length < SHORT:
+            along = SHORT * (arrow / length if length > 1e-9 else np.full(2, -np.sqrt(0.5)))
+            room = [np.hypot(*(side - others).T).min() for side in (along, -along)]
+            places[k] = along if room[0] > 0.9 * room[1] else -along
+    return places
 
 
 def annotate(axes, camera: Camera, bounds, unit: str, key=None):
