@@ -7,6 +7,7 @@ from outputs import CASE, create, write
 
 from rodsim import open_trajectory
 from rodsim.case import case_from_mapping
+from rodsim.commands import stored_case
 from rodsim.commands.stored_case import describe_stored, diameter_of, is_driven
 from rodsim.output import CaseText
 
@@ -14,6 +15,7 @@ ROD = {
     "shape": {"kind": "straight", "points": 4, "spacing": 0.25},
     "moduli": {"bending": [3.5e-3, 3.6e-3], "twisting": 2.5e-3, "shear": 0.7, "stretch": "0.9 + s"},
 }
+FAR = {**ROD, "shape": {**ROD["shape"], "origin": [0, 9, 0]}}
 DATA = {
     "title": "t",
     "units": {"length": "um", "mass": "g", "time": "s"},
@@ -21,7 +23,7 @@ DATA = {
     "rods": {
         "zeta": ROD,
         "alpha": ROD,
-        "t": {**ROD, "shape": {**ROD["shape"], "origin": [0, 9, 0]}},
+        "t": FAR,
     },
     "tracers": {"marks": {"kind": "tube", "rod": "t", "radius": 0.6, "around": 3, "along": 5}},
     "time": {"end": 0.7, "integrator": "rk4", "step": 1e-3},
@@ -45,8 +47,8 @@ def stored(tmp_path):
 def test_a_drive_is_an_expression_of_time_and_no_name_that_looks_like_one(stored):
     with stored() as run:
         assert not is_driven(run, run.case_data())
-    driven = {"zeta": {**ROD, "strain_twist": ["0.3*sin(40*t)", 0, 0]}}
-    with stored(rods=DATA["rods"] | driven) as run:
+    driven = {**ROD, "strain_twist": ["0.3*sin(40*t)", 0, 0]}
+    with stored(rods={"zeta": driven, "alpha": FAR}, tracers={}) as run:
         assert is_driven(run, run.case_data())
 
 
@@ -68,6 +70,23 @@ def test_the_lines_of_a_whole_case(stored):
         "g um^3 s^-2; shear 0.7, stretch 0.9 + s g um s^-2"
     )
     assert lines[-1] == "time: to 0.7 s by rk4, step 0.001"
+
+
+def test_moduli_are_those_of_each_rod_and_told_once_where_both_are_the_same(stored):
+    soft = {"bending": [2.5e-3, 2.5e-3], "twisting": 2.5e-3, "shear": 0.6, "stretch": 0.8}
+    with stored(title="", rods=DATA["rods"] | {"alpha": {**FAR, "moduli": soft}}) as run:
+        first, zeta, alpha, time = describe_stored(run)
+    assert first.startswith("fluid: viscosity")  # no line for a title that is not there
+    assert "; bending 0.0035 and 0.0036, twisting" in zeta
+    assert "; bending 0.0025, twisting 0.0025 g um^3 s^-2; shear 0.6, stretch 0.8 g um" in alpha
+    assert time.startswith("time: to 0.7 s")
+
+
+def test_of_many_rods_the_first_are_described(stored, monkeypatch):
+    monkeypatch.setattr(stored_case, "MOST_RODS", 1)
+    with stored() as run:
+        lines = describe_stored(run)
+    assert [line.partition(":")[0] for line in lines[2:]] == ["rod zeta", "and 1 more rods", "time"]
 
 
 @pytest.mark.parametrize("text", [CASE.resolved, "[3]", '{"fluid": {"viscosity": "x"}, "time": 3}'])
