@@ -163,9 +163,9 @@ def _add_series(file, plan):
     frames = len(plan.times)
     file.create_group("particles", track_order=True)  # H5MD readers may take its first group
     clock = file.create_group(CLOCK)
-    rows.make_room(clock, "time", (frames,), np.float64, np.nan)
-    rows.make_room(clock, "step", (frames,), np.int64, -1)
-    clock["time"].attrs["units"] = unit_text(layout.TIME, plan.units)
+    time = rows.make_room(clock, "time", (frames,), np.float64, np.nan)
+    step = rows.make_room(clock, "step", (frames,), np.int64, -1)
+    time.attrs["units"] = unit_text(layout.TIME, plan.units)
     for series in plan.stored():
         group = file.require_group(series.where)
         value = rows.make_room(group, "value", (frames, *series.shape), np.float64, np.nan)
@@ -173,7 +173,7 @@ def _add_series(file, plan):
         if series.name in plan.labels:
             value.attrs["rows"] = ", ".join(plan.labels[series.name])
         if series.where != CLOCK:
-            group["time"], group["step"] = clock["time"], clock["step"]
+            group["time"], group["step"] = time, step
 
 
 def _add_runtime(group, device):

@@ -34,6 +34,15 @@ def make_room(group: h5py.Group, name: str, shape, dtype, fill=0) -> h5py.Datase
     return h5py.Dataset(h5py.h5d.create(group.id, name.encode(), kind, room, properties))
 
 
+def put_whole(group: h5py.Group, name: str, values, dtype=np.int64) -> h5py.Dataset:
+    """Create a dataset that never changes."""
+    values = np.array(values, dtype)
+    dataset = make_room(group, name, values.shape, dtype)
+    if values.size:
+        dataset.id.write(h5py.h5s.ALL, h5py.h5s.ALL, values)
+    return dataset
+
+
 class Rows:
     """The rows of a dataset of fixed size, or a single number. After a flush of the file."""
 

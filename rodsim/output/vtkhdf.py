@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 
 from rodsim.output.layout import SURFACES, TRAJECTORY, Plan
-from rodsim.output.rows import Counter, Growing
+from rodsim.output.rows import Counter, Growing, put_whole
 
 VERSION = (2, 0)
 CELLS = ("Vertices", "Lines", "Polygons", "Strips")  # VTK insists on all four
@@ -106,11 +106,11 @@ def add_cells(root: h5py.Group, cells: dict[str, list[list[int]]]) -> None:
     for name in CELLS:
         nodes = cells.get(name, [])
         group = root.create_group(name)
-        connectivity = np.array([node for cell in nodes for node in cell], dtype=np.int64)
-        group["NumberOfCells"] = np.array([len(nodes)], dtype=np.int64)
-        group["NumberOfConnectivityIds"] = np.array([connectivity.size], dtype=np.int64)
-        group["Offsets"] = np.cumsum([0, *map(len, nodes)], dtype=np.int64)
-        group["Connectivity"] = connectivity
+        connectivity = [node for cell in nodes for node in cell]
+        put_whole(group, "NumberOfCells", [len(nodes)])
+        put_whole(group, "NumberOfConnectivityIds", [len(connectivity)])
+        put_whole(group, "Offsets", np.cumsum([0, *map(len, nodes)]))
+        put_whole(group, "Connectivity", connectivity)
 
 
 def add_steps(group: h5py.Group, frames: int, points: int, point_data, cell_data) -> None:
@@ -118,13 +118,12 @@ def add_steps(group: h5py.Group, frames: int, points: int, point_data, cell_data
     group.attrs["NSteps"] = np.int64(0)
     # One chunk, there from the start: growing changes one number, and no index that could tear.
     group.create_dataset("Values", (1,), np.float64, maxshape=(frames,), chunks=(frames,))[:] = 0.0
-    group["NumberOfParts"] = np.ones(frames, dtype=np.int64)
-    group["PartOffsets"] = np.zeros(frames, dtype=np.int64)
-    group["PointOffsets"] = np.arange(frames, dtype=np.int64) * points
-    group["CellOffsets"] = np.zeros((frames, len(CELLS)), dtype=np.int64)
-    group["ConnectivityIdOffsets"] = group["CellOffsets"]
+    put_whole(group, "NumberOfParts", np.ones(frames))
+    parts = put_whole(group, "PartOffsets", np.zeros(frames))
+    offsets = put_whole(group, "PointOffsets", np.arange(frames) * points)
+    group["ConnectivityIdOffsets"] = put_whole(group, "CellOffsets", np.zeros((frames, len(CELLS))))
     for name in cell_data:
-        group[f"CellDataOffsets/{name}"] = group["PartOffsets"]
+        group[f"CellDataOffsets/{name}"] = parts
     for name in point_data:
-        group[f"PointDataOffsets/{name}"] = group["PointOffsets"]
+        group[f"PointDataOffsets/{name}"] = offsets
     group.require_group("PointDataOffsets")
