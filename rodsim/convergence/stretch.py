@@ -76,6 +76,4 @@ def grown(errors: Errors, guide_part: Errors, guide: Errors) -> Errors:
 
 
 def _grown(error, then, at_end):
-    if error is None or not then:
-        return error
-    return error * at_end / then
+    return error * at_end / then if then else error  # None, where there is none of it

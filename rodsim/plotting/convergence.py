@@ -4,12 +4,12 @@ import textwrap
 
 import numpy as np
 
+from rodsim.case.methods import ADAPTIVE
 from rodsim.convergence.outcome import pairs
 from rodsim.convergence.report import fitted_order
 from rodsim.plotting import style
 
 WIDE = 1.5  # times as wide as high: the three panels then stand side by side
-ROOMY = 4.0  # inches of a panel that has room for a legend
 NUMBERS, NUMBER = 9, 0.33  # on a side at most; inches that each takes
 FRAME = 0.7  # inches of a panel beside its axes
 FEW_DECADES = 2.6  # on fewer, ticks stand at 2 and 5 as well
@@ -34,8 +34,9 @@ DASHES = {
     "epsilon": ":",
     "accuracy": "-.",
 }
+ADAPTIVE_TITLE = "tolerance"
 TITLES = {
-    "time": "tolerance or step",
+    "time": "step",
     "points": "points at fixed epsilon",
     "body_points": "points of bodies",
     "epsilon": "epsilon (sensitivity)",
@@ -52,7 +53,8 @@ def plot_study(study, path, sheet=style.PLAIN) -> None:
     rows, columns = (1, 3) if abreast else (3, 1)
     axes = figure.subplots(rows, columns, sharey=True)
     for axis, draw in zip(axes, (draw_run_time, draw_evaluations, draw_orders), strict=True):
-        draw(axis, study)
+        draw(axis, study, legend=False)
+    _legend(figure, axes[-1], width)
     error = style.label("largest position error at the end", study.case.units.length)
     for axis in axes[:1] if abreast else axes:
         axis.set_ylabel(error)
@@ -61,14 +63,23 @@ def plot_study(study, path, sheet=style.PLAIN) -> None:
     sheet.save(figure, path)
 
 
-def draw_run_time(axis, study):
+def _legend(figure, axis, width):
+    """Put one legend for all panels below them, in as many columns as there is room for."""
+    handles, labels = axis.get_legend_handles_labels()
+    if labels:
+        wide = style.HANDLE + style.LETTER * max(map(len, labels))
+        columns = max(1, min(len(labels), int(width / wide)))
+        figure.legend(handles, labels, frameon=False, loc="outside lower center", ncols=columns)
+
+
+def draw_run_time(axis, study, legend=True):
     """Draw the largest position error over the wall time of the solve; return the axis."""
     _draw_cost(axis, study, lambda outcome: outcome.best)
     axis.set_xlabel("wall time of the solve (s)")
-    return _finish(axis)
+    return _finish(axis, legend)
 
 
-def draw_evaluations(axis, study):
+def draw_evaluations(axis, study, legend=True):
     """Draw the largest position error over the evaluations of the sums; return the axis.
 
     Those with other numbers of points count by their pairs, over those of the case itself. No
@@ -77,7 +88,7 @@ def draw_evaluations(axis, study):
     own = pairs(study.scene)
     _draw_cost(axis, study, lambda outcome: outcome.evaluations * outcome.pairs / own)
     axis.set_xlabel("evaluations of the case's own sums")
-    return _finish(axis, legend=False)
+    return _finish(axis, legend)
 
 
 def _draw_cost(axis, study, cost):
@@ -86,7 +97,7 @@ def _draw_cost(axis, study, cost):
             costs = [cost(r.outcome) for r in part]
             errors = [r.errors.position for r in part]
             marker, colour = SPACE.get(section.axis) or MARKS[method]
-            label = f"{method}, {TITLES[section.axis]}"
+            label = _label(section, method)
             axis.loglog(costs, errors, DASHES[section.axis], marker=marker, c=colour, label=label)
             _hollow(axis, costs, errors, part, marker, colour)
         if section.axis == "time" and section.own and section.own.position > 0.0:
@@ -96,7 +107,7 @@ def _draw_cost(axis, study, cost):
                           color="0.45", fontsize=8)  # fmt: skip
 
 
-def draw_orders(axis, study):
+def draw_orders(axis, study, legend=True):
     """Draw the errors over step, spacing or epsilon, all over the case's own; return the axis.
 
     The legend tells the slope of each line, the observed order.
@@ -105,13 +116,12 @@ def draw_orders(axis, study):
         for method, part in _by_method(section):
             sizes = np.array([_relative_size(study, section, r) for r in part])
             marker, colour = SPACE.get(section.axis) or MARKS[method]
-            order = fitted_order(section, method)
-            label = f"{method}, {_what(section)}" + (f": slope {order:.2f}" if order else "")
+            label = _label(section, method)
             errors = [r.errors.position for r in part]
             axis.loglog(sizes, errors, DASHES[section.axis], marker=marker, c=colour, label=label)
             _hollow(axis, sizes, errors, part, marker, colour)
     axis.set_xlabel(" or ".join(SIZES[section.axis] for section in study.sections))
-    return _finish(axis)
+    return _finish(axis, legend)
 
 
 def _hollow(axis, x, errors, part, marker, colour):
@@ -141,9 +151,12 @@ def _relative_size(study, section, result):
     return 1.0 / result.outcome.steps
 
 
-def _what(section):
-    names = {"time": "mean step", "points": "spacing", "epsilon": "epsilon", "accuracy": "accuracy"}
-    return names.get(section.axis, "spacing of bodies")
+def _label(section, method):
+    """Return what a line is: the method, what varies, the order seen."""
+    varied = ADAPTIVE_TITLE if section.axis == "time" and method in ADAPTIVE else None
+    order = fitted_order(section, method)
+    seen = f": order {order:.2f}" if order else ""
+    return f"{method}, {varied or TITLES[section.axis]}{seen}"
 
 
 def _finish(axis, legend=True):
@@ -158,7 +171,7 @@ def _finish(axis, legend=True):
 
 
 def _fit(axis, width, height):
-    """Lay a panel out for its width and height in inches: ticks, names, the legend."""
+    """Lay a panel out for its width and height in inches: ticks and names."""
     axis.set_xlabel(_wrapped(axis.get_xlabel(), width))
     axis.set_ylabel(_wrapped(axis.get_ylabel(), height))
     if axis.get_legend_handles_labels()[0]:
@@ -167,10 +180,6 @@ def _fit(axis, width, height):
             (axis.yaxis, axis.get_ylim(), height),
         ):
             _readable(side, *limits, int(min(NUMBERS, (room - FRAME) / NUMBER)))
-    if width < ROOMY and axis.get_legend():
-        axis.get_legend().remove()
-        labels = axis.get_legend_handles_labels()
-        axis.legend(*labels, frameon=False, fontsize=7, loc="lower left", bbox_to_anchor=(0, 1))
 
 
 def _wrapped(text, room):

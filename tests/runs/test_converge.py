@@ -248,6 +248,7 @@ def test_costly_rows_are_run_over_a_stretch_and_come_to_what_they_would_at_the_e
     rows = [{(r.row.method, r.row.value): r for _, r in results} for results in (short, whole)]
     assert rows[0].keys() == rows[1].keys()
     assert [r.row.part for _, r in short] == [1.0, 0.05, 0.05]
+    assert [r.row.part for _, r in whole] == [1.0, 1.0, 1.0]
     for one, all_of_it in zip(rows[0].values(), rows[1].values(), strict=True):
         assert one.outcome.evaluations == all_of_it.outcome.evaluations
         assert one.outcome.steps == all_of_it.outcome.steps
