@@ -71,7 +71,12 @@ def at_time(start: Start, time: float | None) -> Start:
     driven = [part.drive for part in scene.parts.of(PLACE, FORCE) if part.row.driven]
     if driven and time is None:
         raise UsageError(f"{driven[0]} depends on time: say with --at when it is looked at")
-    moment = 0.0 if time is None else time
+    moment, end = 0.0 if time is None else time, start.case.time.end
+    if not 0.0 <= moment <= end:  # or not a number
+        raise UsageError(
+            f"--at {moment:g}: not between 0 and time.end = {end:g}, where what depends on time "
+            "was checked: change it, or --set time.end"
+        )
     return replace(start, scene=replace(scene, initial=_held_at(scene, moment)))
 
 

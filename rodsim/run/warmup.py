@@ -113,9 +113,15 @@ def _functions(folder):
 
 
 def is_compiled(folder: Path, kind: str) -> bool:
-    """Tell whether a kind of scene is listed as compiled, and all files are as they were."""
+    """Tell whether all that a kind of scene needs is listed as compiled, and files as they were.
+
+    It may have been compiled for several other kinds of this installation.
+    """
     whole = not _is_ours(folder, kind) or _undamaged(folder)
-    return whole and kind in _listed(folder)["kinds"]
+    ours, *needed = kind.split("-")
+    kinds = [listed.split("-") for listed in _listed(folder)["kinds"]]
+    there = [names for installation, *names in kinds if installation == ours]
+    return whole and bool(there) and set().union(*there).issuperset(needed)
 
 
 def note_compiled(folder: Path, kind: str) -> None:

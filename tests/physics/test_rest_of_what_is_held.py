@@ -85,8 +85,13 @@ def test_held_ends_are_where_they_are_at_the_time_that_is_looked_at():
     with pytest.raises(UsageError, match="depends on time: say with --at"):
         at_time(start_from_case(case), None)
     built = build_scene(case).initial
-    found = at_time(start_from_case(case), 2.0).scene.initial
+    start = start_from_case(case)
+    found = at_time(start, 2.0).scene.initial
     assert found.position[:, 0] == pytest.approx(built.position[:, 0] + [0.0, 0.6, 0.0], abs=1e-15)
     # D3 turns from z by the angle 0.4 about x, towards -y
     assert found.director[2, :, -1] == pytest.approx([0, -np.sin(0.4), np.cos(0.4)], abs=1e-14)
     assert np.array_equal(found.position[:, 1:-1], built.position[:, 1:-1])
+    assert found.time == 2.0
+    assert np.array_equal(start.scene.initial.position, built.position)  # what it came from stays
+    at_first = at_time(start, 0.0).scene.initial
+    assert np.array_equal(at_first.position, built.position)

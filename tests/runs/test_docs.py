@@ -3,6 +3,7 @@
 import csv
 import os
 import re
+import shlex
 import subprocess
 import sys
 from itertools import groupby
@@ -11,6 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scenes import ROOT
+
+from rodsim.cli import COMMANDS, main
 
 PAGES = sorted((ROOT / "docs").glob("*.md"))
 SLOW = (
@@ -23,9 +26,11 @@ SLOW = (
     "bodies",
     "large",
     "rest",
+    "figures",
 )  # minutes where the machine is not quiet; and below, the tutorial
 PROJECTS = ("two-flagella", "ring-buckling")  # whose numbers are looked at too
 BLOCK = re.compile(r"(?:<!-- (?P<mark>[\w: ]+) -->\n)?```(?P<kind>\w+)\n(?P<text>.*?)```", re.S)
+COMMAND = re.compile(r"\brodsim ([a-z][^\n|&;>]*)")
 LINK = re.compile(r"\]\((?!https?:)([^)]+)\)")
 
 
@@ -76,6 +81,18 @@ def test_a_page_of_the_docs_runs_in_an_empty_folder(page, tmp_path):
     for name in ("configs", "docs", "benchmarks"):
         (tmp_path / name).symlink_to(ROOT / name)
     run(script(blocks(page)), tmp_path)
+
+
+@pytest.mark.parametrize(
+    "page", [page for page in PAGES if blocks(page)], ids=lambda page: page.stem
+)
+def test_the_options_of_a_page_are_those_of_the_commands(page):
+    """Also of pages that take too long for every day; nothing is run."""
+    shell = "".join(text for kind, text in blocks(page) if kind == "sh").replace("\\\n", " ")
+    for line in COMMAND.findall(shell):
+        name, *words = shlex.split(line, comments=True)
+        if name in COMMANDS and "$" not in line:
+            main.get_command(None, name).make_context(name, words)
 
 
 @pytest.mark.long

@@ -39,6 +39,15 @@ def test_only_what_is_listed_is_compiled(folder):
     assert is_compiled(folder, PLANE)
 
 
+def test_what_other_kinds_of_the_same_installation_needed_is_compiled(folder):
+    note_compiled(folder, "here-wall-tethers")
+    assert is_compiled(folder, "here-algebraic7-tethers")
+    assert not is_compiled(folder, "here-algebraic7-tethers-contact")
+    note_compiled(folder, "there-contact")
+    assert not is_compiled(folder, "here-contact")
+    assert not is_compiled(folder, "elsewhere-wall")
+
+
 def test_a_kernel_that_came_later_changes_nothing(folder):
     (folder / "sums" / "sum.nbi").write_bytes(b"\x80\x04longer index.")
     (folder / "sums" / "sum.2.nbc").write_bytes(b"\x80\x04other code.")

@@ -38,6 +38,8 @@ _GROUPS = {  # by whether there is a wall, and whether w is wanted
     (True, False): (WALL_FLOW_7, WALL_FLOW_9),
     (True, True): (WALL_TURNING_7, WALL_TURNING_9),
 }
+# No sample. Not a plain False: Numba would compile the sum once more, for that value alone.
+WHOLE = np.bool_(False)
 
 
 def sum_kernel(blob, planar=False, walled=False):
@@ -60,13 +62,13 @@ def _free_rods(blob, planar):
         before = velocities_of_held(fixed, out)
         if planar:
             if seven:
-                PLANAR_7(fixed, points, loads, False, out)
+                PLANAR_7(fixed, points, loads, WHOLE, out)
             else:
-                PLANAR_9(fixed, points, loads, False, out)
+                PLANAR_9(fixed, points, loads, WHOLE, out)
         elif seven:
-            SPATIAL_7(fixed, points, loads, False, out)
+            SPATIAL_7(fixed, points, loads, WHOLE, out)
         else:
-            SPATIAL_9(fixed, points, loads, False, out)
+            SPATIAL_9(fixed, points, loads, WHOLE, out)
         move_held(fixed, points, loads, before, out)
 
     return move_rods
@@ -85,13 +87,13 @@ def _rods_at_wall(blob, planar):
             return
         if planar:
             if seven:
-                WALL_PLANAR_7(fixed, points, loads, False, out)
+                WALL_PLANAR_7(fixed, points, loads, WHOLE, out)
             else:
-                WALL_PLANAR_9(fixed, points, loads, False, out)
+                WALL_PLANAR_9(fixed, points, loads, WHOLE, out)
         elif seven:
-            WALL_SPATIAL_7(fixed, points, loads, False, out)
+            WALL_SPATIAL_7(fixed, points, loads, WHOLE, out)
         else:
-            WALL_SPATIAL_9(fixed, points, loads, False, out)
+            WALL_SPATIAL_9(fixed, points, loads, WHOLE, out)
         move_held(fixed, points, loads, before, out)
 
     return move_rods
@@ -104,9 +106,9 @@ def _free_tracers(blob):
     @part
     def move_tracers(row, fixed, rods, state, loads, velocities):
         if seven:
-            FLOW_7(fixed, state[2], state[0], loads, False, velocities[1])
+            FLOW_7(fixed, state[2], state[0], loads, WHOLE, velocities[1])
         else:
-            FLOW_9(fixed, state[2], state[0], loads, False, velocities[1])
+            FLOW_9(fixed, state[2], state[0], loads, WHOLE, velocities[1])
 
     return move_tracers
 
@@ -118,9 +120,9 @@ def _tracers_at_wall(blob):
     @part
     def move_tracers(row, fixed, rods, state, loads, velocities):
         if seven:
-            WALL_FLOW_7(fixed, state[2], state[0], loads, False, velocities[1])
+            WALL_FLOW_7(fixed, state[2], state[0], loads, WHOLE, velocities[1])
         else:
-            WALL_FLOW_9(fixed, state[2], state[0], loads, False, velocities[1])
+            WALL_FLOW_9(fixed, state[2], state[0], loads, WHOLE, velocities[1])
         drop_below(state[2], fixed[WALL], fixed[EPSILON], velocities[1])
 
     return move_tracers
