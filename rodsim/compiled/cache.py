@@ -11,15 +11,22 @@ from functools import cache, cached_property
 from hashlib import sha256
 from pathlib import Path
 
+import numba
 from numba import njit
 from numba.core.caching import FunctionCache, NullCache
 from numba.core.ccallback import CFunc
+from numba.core.runtime import rtsys
 from numba.core.sigutils import normalize_signature
 
-from rodsim.compiled import reading
 from rodsim.compiled.folder import alone
 from rodsim.compiled.settings import without_scipy
 from rodsim.errors import FileError
+
+# The versions of Numba whose ways of reading are known well enough to do less; others do as theirs.
+KNOWN = (0, 61), (0, 68)
+reading = None
+if KNOWN[0] <= numba.version_info.short <= KNOWN[1]:
+    from rodsim.compiled import reading
 
 END = b"."  # of every pickle
 LOCK = ".saving"
@@ -32,16 +39,20 @@ class _Cache(FunctionCache):
     it knows, which takes longer than to read what a run needs. Who compiles does so again.
     """
 
-    _impl_class = reading.Impl
+    _impl_class = reading.Impl if reading else FunctionCache._impl_class
 
     def __init__(self, function):
         super().__init__(function)
-        stamp = self._impl.locator.get_source_stamp()
-        self._cache_file = reading.File(self._cache_path, self._impl.filename_base, stamp)
+        if reading:
+            stamp = self._impl.locator.get_source_stamp()
+            self._cache_file = reading.File(self._cache_path, self._impl.filename_base, stamp)
 
     def load_overload(self, sig, target_context):
         """Return the compiled function of a signature, None where the cache has none."""
-        reading.know_memory()
+        if reading:
+            reading.know_memory()
+        else:
+            rtsys.initialize(target_context)  # memory of arrays, which the code on the disk calls
         with without_scipy(), self._guard_against_spurious_io_errors():
             try:
                 found = self._load_overload(sig, target_context)

@@ -35,6 +35,16 @@ try:
 except ValueError as error:
     print(error)
 """
+UNKNOWN = """
+import numba
+numba.version_info = numba.version_info._replace(short=(9, 0))
+import numpy as np
+import kernels
+from numba.core.runtime import rtsys
+assert sum(kernels.squares.stats.cache_hits.values()) == 1
+assert rtsys._init
+print(kernels.squares(np.array([3.0, 5.0, 7.0, 9.0])).tolist())
+"""
 LINKED = """
 import numpy as np
 import kernels
@@ -78,3 +88,11 @@ def test_what_only_compiling_needs_is_left_out_of_reading(run):
 @pytest.mark.compiled
 def test_what_was_read_is_linked_into_what_is_compiled(run):
     assert run(LINKED) == "[[36.0, 100.0], [196.0, 324.0]]\n1\n"
+
+
+@pytest.mark.compiled
+def test_a_numba_that_is_not_known_reads_in_its_own_way(run):
+    """From a cache of its own, for what is kept differs."""
+    assert run("import shutil, os; shutil.rmtree(os.environ['NUMBA_CACHE_DIR'])") == ""
+    run(UNKNOWN.split("import numpy")[0] + "import kernels")
+    assert run(UNKNOWN) == "[[9.0, 25.0], [49.0, 81.0]]\n"
