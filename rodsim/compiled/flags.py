@@ -58,7 +58,6 @@ threaded_kernel = partial(
     parallel={name: name == "prange" for name in PARALLEL},
 )
 unsigned = kernel  # without a signature: compiled with whatever calls it
-within = partial(kernel, no_cpython_wrapper=True)  # the same, and never called from Python
 inline = partial(cached_njit, error_model="numpy", inline="always")
 
 

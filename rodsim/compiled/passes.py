@@ -4,18 +4,18 @@ import math
 
 import numpy as np
 
-from rodsim.compiled.flags import unsigned, within
+from rodsim.compiled.flags import inline
 from rodsim.compiled.rotations import rotation_vector_rate
 
 
-@within
+@inline
 def weighted_sum(a, x, b, y, out):
     """out = a x + b y."""
     for i in range(np.uint64(out.size)):
         out[i] = a * x[i] + b * y[i]
 
 
-@within
+@inline
 def _largest_rms(values, weights, first, count):
     """Return the largest weighted root mean square of a rod's numbers, or of all tracers'.
 
@@ -41,7 +41,7 @@ def _largest_rms(values, weights, first, count):
     return largest
 
 
-@unsigned
+@inline
 def remaining(size, c, memory, y, velocities, f0, g, weights, first, count, f1, third, error):
     """Return how large the error is that a trial step leaves, see ``Defect.correction``.
 
@@ -61,14 +61,14 @@ def remaining(size, c, memory, y, velocities, f0, g, weights, first, count, f1, 
     return _largest_rms(error, weights, first, count)
 
 
-@within
+@inline
 def probe(size, direction, weights, y):
     """y = size direction/weights, in the first ``weights.size`` numbers."""
     for i in range(np.uint64(weights.size)):
         y[i] = size * direction[i] / weights[i]
 
 
-@within
+@inline
 def image(size, shifted, rate, weights, out):
     """out = weights (shifted - rate)/size, in the first ``weights.size`` numbers."""
     for i in range(np.uint64(weights.size)):

@@ -9,6 +9,7 @@ import math
 import numpy as np
 
 from rodsim.compiled.flags import STATE, VEC, inline, kernel, unsigned
+from rodsim.vectors import cross
 
 SERIES_UP_TO = 1.0  # squared angle: there the next terms of the series are below 1e-19
 
@@ -96,8 +97,8 @@ def angular_velocity(theta: np.ndarray, rate: np.ndarray) -> np.ndarray:
     small = angle2 < 1e-2
     series = 1.0 / 6.0 - angle2 / 120.0 * (1.0 - angle2 / 42.0 * (1.0 - angle2 / 72.0))
     second = np.where(small, series, (1.0 - np.sinc(angle / np.pi)) / np.where(small, 1.0, angle2))
-    turned = np.cross(theta, rate, axis=0)
-    return rate + first * turned + second * np.cross(theta, turned, axis=0)
+    turned = cross(theta, rate)
+    return rate + first * turned + second * cross(theta, turned)
 
 
 @unsigned

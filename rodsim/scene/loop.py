@@ -16,7 +16,6 @@ from rodsim.compiled.flags import (
     call_part,
     inline,
     kernel,
-    within,
 )
 from rodsim.compiled.kernels import evaluation
 from rodsim.compiled.rotations import displace, rotation_vector_rate
@@ -35,7 +34,7 @@ from rodsim.scene.calls import (
 CALLS = f"{INT_MAT}, {VEC}"  # scene.calls.Calls: table, numbers
 
 
-@within
+@inline
 def to_increments(y, velocities):
     """Turn velocities at increments ``y`` into dy/dt, in place: w becomes d theta/dt.
 
@@ -93,7 +92,7 @@ def evaluate(table, numbers, driven, rods, state, loads, velocities, own):
             _add(mine, loads)
 
 
-@within
+@inline
 def powers(table, numbers, loads, velocities, own, out):
     """Write the power of each account, what the fluid dissipates, all gauges: (Q + 1 + G,).
 

@@ -15,7 +15,6 @@ from rodsim.compiled.flags import (
     call_evaluation,
     inline,
     kernel,
-    within,
 )
 from rodsim.compiled.passes import image, probe, remaining, weighted_sum
 from rodsim.scene.loop import CALLS, to_increments
@@ -23,7 +22,7 @@ from rodsim.scene.loop import CALLS, to_increments
 SCENE = f"int64, {CALLS}, {VEC}, {RODS}, {STATE}, {WORK}"  # as the evaluation takes it
 
 
-@within
+@inline
 def _rates(velocities, table, numbers, driven, rods, base, work, y, out):
     """Write dy/dt at increments ``y`` from ``base`` into ``out``."""
     call_evaluation(velocities, table, numbers, driven, rods, base, work, y, out)
