@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from calls import told
+from calls import command, told
 from drawn import EPSILON, coil, faults, wave, write
 
 from rodsim.output.layout import ENERGY
@@ -340,7 +340,7 @@ def test_powers_of_ten_stand_with_the_unit(here, seen):
 def test_hooks_have_curves_and_columns_of_their_own(here, seen):
     told("plot", here / "hooks.h5", "-w", "hook_energy", "-o", "a.png")
     assert {"cell.tail", "cell.other"} <= words(seen[0])
-    told("energy", here / "hooks.h5", "--csv", "e.csv")
+    command("energy", here / "hooks.h5", "--csv", "e.csv")
     heads, *rows = (line.split(",") for line in Path("e.csv").read_text().splitlines())
     columns = dict(zip(heads, np.array(rows, float).T, strict=True))
     unit = "(g um^2 s^-2)"
