@@ -19,14 +19,11 @@ import numba  # noqa: E402
 sys.path.insert(0, str(Path(__file__).parent))
 sys.path.append(str(Path(__file__).parent.parent / "benchmarks"))  # the rival, and the theory
 
-# Modules that compile when they are imported, and the kernels that take longest.
+# Modules that compile when they are imported.
 AHEAD = (
-    "rodsim.blocks.hold:hold",
-    "rodsim.blocks.hold:release",
     "rodsim.blocks.springs",
     "rodsim.flows.carried",
     "rodsim.flows.fast.plan",
-    "rodsim.flows.free:spatial_7",
     "rodsim.forces.repulsion",
     "rodsim.forces.surfaces",
     "rodsim.rest.differences",
@@ -44,7 +41,28 @@ def pytest_configure(config):
     if whole and not of_a_worker and config.getoption("numprocesses", None):
         from rodsim.run.warmup import ensure
 
-        ensure(AHEAD, lambda line: print(line, file=sys.__stderr__), "the tests")
+        names = {*AHEAD, *shipped_kernels()}
+        ensure(names, lambda line: print(line, file=sys.__stderr__), "the tests")
+
+
+def shipped_kernels():
+    """Return the kernels of the scenes that are shipped, and so of most scenes of tests.
+
+    Each command that a test calls would start a process of its own for those it is the first to
+    need.
+    """
+    from scenes import CONFIGS
+
+    from rodsim.case import load_case
+    from rodsim.scene.build import build_scene
+
+    scenes = [build_scene(load_case(path)) for path in sorted(CONFIGS.glob("*.yaml"))]
+    return {
+        where
+        for scene in scenes
+        for part in scene.parts
+        for where in (part.where, *part.sums, *part.needs)
+    }
 
 
 def pytest_collection_modifyitems(config, items):
@@ -55,3 +73,10 @@ def pytest_collection_modifyitems(config, items):
                 item.add_marker(pytest.mark.skip(reason=f"takes minutes: pytest -m {mark}"))
         if "compiled" in item.keywords and numba.config.DISABLE_JIT:
             item.add_marker(pytest.mark.skip(reason="needs compiled kernels"))
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """An empty folder that is the current one."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path

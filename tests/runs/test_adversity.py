@@ -6,8 +6,9 @@ import sys
 
 import numpy as np
 import pytest
+from calls import call
 from contents import differences
-from test_resume import DRIVEN, PLANAR, after, call, make
+from interrupted import DRIVEN, PLANAR, after, make
 
 from rodsim import open_trajectory, resume, simulate
 from rodsim.errors import StoppedError

@@ -1,9 +1,7 @@
 """Broken case files and options: exit code 2, file:line, key and reason, and no output touched."""
 
 import pytest
-from click.testing import CliRunner
-
-from rodsim.cli import main
+from calls import command
 
 FLAGELLUM = """\
 title: flagellum
@@ -190,8 +188,7 @@ def run(tmp_path, monkeypatch):
 
     def invoke(case, *options):
         (tmp_path / "bad.yaml").write_bytes(case if isinstance(case, bytes) else case.encode())
-        result = CliRunner().invoke(main, ["run", "bad.yaml", "-o", "out.h5", *options])
-        assert result.exit_code == 2, result.output
+        result = command("run", "bad.yaml", "-o", "out.h5", *options, code=2)
         assert "Traceback" not in result.output
         assert result.stdout == ""
         assert sorted(p.name for p in tmp_path.iterdir()) == ["bad.yaml", "out.h5"]
@@ -413,8 +410,7 @@ def test_bad_options(run, options, words):
 )
 def test_unreadable_case(tmp_path, monkeypatch, name, words):
     monkeypatch.chdir(tmp_path)
-    result = CliRunner().invoke(main, ["run", name, "-o", "out.h5"])
-    assert result.exit_code == 2
+    result = command("run", name, "-o", "out.h5", code=2)
     assert result.stderr == f"{name}: {words}" + result.stderr.partition(words)[2]
     assert result.stderr.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
@@ -425,8 +421,7 @@ def test_validate_reports_every_file(tmp_path, monkeypatch):
     (tmp_path / "a.yaml").write_text(FLAGELLUM.replace("end: 0.1", "end: x"))
     (tmp_path / "b.yaml").write_text(FLAGELLUM)
     (tmp_path / "c.yaml").write_text(FLAGELLUM.replace("blob", "").replace("plane: yz", "plan: yz"))
-    result = CliRunner().invoke(main, ["validate", "a.yaml", "b.yaml", "c.yaml"])
-    assert result.exit_code == 2
+    result = command("validate", "a.yaml", "b.yaml", "c.yaml", code=2)
     assert [line.split(" ")[0] for line in result.stderr.splitlines()] == [
         "a.yaml:25:", "c.yaml:21:"
     ]  # fmt: skip

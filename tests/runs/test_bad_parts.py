@@ -2,9 +2,7 @@
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-
-from rodsim.cli import main
+from calls import command
 
 CASE = """\
 fluid: {viscosity: 1.3e-6, epsilon: 0.3, flow: ["2.3*z", 0.7, 0]}
@@ -107,8 +105,7 @@ def run(tmp_path, monkeypatch):
 
     def run(text):
         (tmp_path / "bad.yaml").write_text(text)
-        result = CliRunner().invoke(main, ["run", "bad.yaml", "-o", "out.h5"])
-        assert result.exit_code == 2, result.output
+        result = command("run", "bad.yaml", "-o", "out.h5", code=2)
         assert not (tmp_path / "out.h5").exists()
         return result.stderr.splitlines()
 
@@ -129,8 +126,7 @@ def test_one_problem(run, text, old, new, line, start, words):
 @pytest.mark.parametrize("text", [CASE, PLANAR])
 def test_the_cases_themselves_are_valid(text, tmp_path):
     (tmp_path / "good.yaml").write_text(text)
-    result = CliRunner().invoke(main, ["validate", str(tmp_path / "good.yaml")])
-    assert result.exit_code == 0, result.stderr
+    command("validate", tmp_path / "good.yaml")
 
 
 def test_several_at_once(run):

@@ -13,7 +13,7 @@ import time
 import numpy as np
 import pytest
 import yaml
-from click.testing import CliRunner
+from calls import call
 from scenes import CONFIGS, ROOT, load
 
 import rodsim
@@ -26,17 +26,7 @@ RING = str(CONFIGS / "closed_ring.yaml")
 SHORT = ("--set", "rods.ring.shape.points=40", "--set", "time.end=2e-3")
 
 
-@pytest.fixture
-def here(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
 ENDLESS = ("--set", "time.max_step=1e-9")  # 1e8 steps: it cannot end before it is stopped
-
-
-def call(*arguments):
-    return CliRunner().invoke(main, [str(argument) for argument in arguments])
 
 
 def wait_for_frames(path, writer):
@@ -314,12 +304,12 @@ def test_cite_has_this_version_and_the_paper_for_people_and_for_bibtex():
 @pytest.mark.parametrize("name", ["", *COMMANDS])
 def test_no_line_of_a_help_is_longer_than_a_terminal(name):
     arguments = [name, "--help"] if name else ["--help"]
-    text = CliRunner().invoke(main, arguments, terminal_width=80).stdout
+    text = call(*arguments, terminal_width=80).stdout
     assert max(map(len, text.splitlines())) <= 80
 
 
 def test_the_list_of_commands_has_their_first_sentences_whole():
-    listed = CliRunner().invoke(main, ["--help"], terminal_width=80).stdout
+    listed = call("--help", terminal_width=80).stdout
     flat = " ".join(listed.split())
     for name in COMMANDS:
         text = " ".join(main.get_command(None, name).help.split("\n\n")[0].split())

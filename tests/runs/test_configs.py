@@ -3,14 +3,13 @@
 import numpy as np
 import pytest
 from acting import of_part
-from click.testing import CliRunner
+from calls import command
 from scenes import CONFIGS, load
 
 from rodsim import open_trajectory
 from rodsim.analysis.helix import fit_helix
 from rodsim.analysis.swimming import swimming_velocity
 from rodsim.analysis.topology import twist, writhe
-from rodsim.cli import main
 from rodsim.scene.restore import restore_scene, stored_state
 from rodsim.scene.system import RodSystem
 
@@ -19,9 +18,7 @@ PERIOD = 2 * np.pi / 400
 
 def run(config, tmp_path, *options):
     output = tmp_path / "out.h5"
-    arguments = ["run", str(CONFIGS / f"{config}.yaml"), "-o", str(output), *options]
-    result = CliRunner().invoke(main, arguments)
-    assert result.exit_code == 0, result.stderr
+    command("run", CONFIGS / f"{config}.yaml", "-o", output, *options)
     return open_trajectory(output)
 
 
@@ -244,8 +241,7 @@ def test_the_crossing_rods_hold_each_other_as_their_header_says(tmp_path):
 @pytest.mark.compiled
 def test_the_trefoil_comes_to_rest_as_its_header_says(tmp_path):
     output = tmp_path / "rest.h5"
-    result = CliRunner().invoke(main, ["rest", str(CONFIGS / "trefoil.yaml"), "-o", str(output)])
-    assert result.exit_code == 0, result.stderr
+    command("rest", CONFIGS / "trefoil.yaml", "-o", output)
     with open_trajectory(output) as trajectory:
         energy = total(trajectory)
         assert energy == pytest.approx([0.02937, 0.01489], rel=5e-4)

@@ -7,9 +7,9 @@ from dataclasses import replace
 import h5py
 import numpy as np
 import pytest
+from calls import call, settings
 from contents import differences
-from test_commands import call
-from test_resume import killed_at_every_step, make
+from interrupted import make, run_with_copies
 
 from rodsim import open_trajectory, resume, simulate
 from rodsim.analysis.energy import energy_table
@@ -47,19 +47,12 @@ def write(folder, text=CROSSING):
     return str(folder / "case.yaml")
 
 
-def settings(*changes):
-    return [word for change in changes for word in ("--set", change)]
-
-
 @pytest.fixture(scope="module")
 def pressed(tmp_path_factory):
     """A run of the scene, a copy of its file after every step, and what was said."""
     folder, said = tmp_path_factory.mktemp("pressed"), []
-    (folder / "killed").mkdir()
-    path = folder / "out.h5"
-    stop = killed_at_every_step(path, folder / "killed")
-    summary = simulate(make(folder, CROSSING), path, stop=stop, notify=said.append)
-    return path, sorted(folder.glob("killed/*.h5"), key=lambda f: int(f.stem)), said, summary
+    run = run_with_copies(make(folder, CROSSING), folder, notify=said.append)
+    return *run, said
 
 
 @pytest.mark.parametrize(
@@ -105,7 +98,7 @@ def test_what_may_go_wrong_is_warned_of(changes, words, tmp_path):
 
 
 def test_rods_that_touch_stay_apart_and_come_to_rest(pressed):
-    path, _, said, summary = pressed
+    path, _, summary, said = pressed
     assert said == []  # that they touch is no news
     with open_trajectory(path) as run:
         gap, stored = run.observable("gap"), run.observable("contact_energy")

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from calls import call, settings
 from contents import differences
-from test_commands import call
-from test_resume import killed_at_every_step, make
+from interrupted import make, run_with_copies
 
 from rodsim import open_trajectory, resume, simulate
 from rodsim.analysis.energy import energy_table
@@ -39,19 +39,12 @@ def write(folder):
     return str(folder / "case.yaml")
 
 
-def settings(*changes):
-    return [word for change in changes for word in ("--set", change)]
-
-
 @pytest.fixture(scope="module")
 def pressed(tmp_path_factory):
     """A run of the scene, a copy of its file after every step, and what was said."""
     folder, said = tmp_path_factory.mktemp("pressed"), []
-    (folder / "killed").mkdir()
-    path = folder / "out.h5"
-    stop = killed_at_every_step(path, folder / "killed")
-    simulate(make(folder, PRESSED), path, stop=stop, notify=said.append)
-    return path, sorted(folder.glob("killed/*.h5"), key=lambda f: int(f.stem)), said
+    path, killed, _ = run_with_copies(make(folder, PRESSED), folder, notify=said.append)
+    return path, killed, said
 
 
 def test_energies_of_rods_and_bodies_are_stored_and_the_ledger_closes(pressed):

@@ -6,11 +6,10 @@ from concurrent.futures.process import BrokenProcessPool
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from calls import call
 from scenes import CONFIGS, final_state, load
 
 from rodsim.analysis.difference import position_errors, triad_angle
-from rodsim.cli import main
 from rodsim.convergence import rows, side_by_side
 from rodsim.convergence.report import fitted_order, text
 from rodsim.convergence.study import Study
@@ -133,18 +132,8 @@ def test_tracers_count_and_have_an_error_of_their_own():
     assert "tracers" in text(made)
 
 
-def call(*arguments):
-    return CliRunner().invoke(main, [*map(str, arguments)])
-
-
 COMMAND = ("converge", CONFIGS / "open_rod.yaml", "--set", "rods.rod.shape.points=5",
            "--set", "time.end=1e-4", "--in", "tolerance,epsilon", "-q")  # fmt: skip
-
-
-@pytest.fixture
-def here(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
 
 
 def test_report_is_a_table_a_csv_and_a_picture(here):

@@ -4,9 +4,7 @@ import csv
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-
-from rodsim.cli import main
+from calls import command
 
 CASE = """
 fluid: {viscosity: 1.3e-6, epsilon: 0.25}
@@ -27,11 +25,7 @@ time: {end: 0.05, tolerance: 1.0e-3}
 def test_errors_fall_with_the_points_of_bodies(tmp_path):
     (tmp_path / "case.yaml").write_text(CASE)
     report = tmp_path / "report"
-    done = CliRunner().invoke(
-        main,
-        ["converge", str(tmp_path / "case.yaml"), "--in", "body_points", "-q", "-o", str(report)],
-    )
-    assert done.exit_code == 0, done.output
+    done = command("converge", tmp_path / "case.yaml", "--in", "body_points", "-q", "-o", report)
     assert "error of the surfaces" in done.stdout
     assert "160 points of bodies, held against 80" in done.stdout
     with open(f"{report}.csv", encoding="utf-8") as stream:
@@ -59,17 +53,6 @@ def test_what_has_no_such_points_is_refused(tmp_path, bodies):
         rows = "\n".join(",".join(f"{x:.9f}" for x in point) for point in skin)
         (tmp_path / "x.csv").write_text("x,y,z\n" + rows)
     (tmp_path / "case.yaml").write_text(text)
-    done = CliRunner().invoke(
-        main,
-        [
-            "converge",
-            str(tmp_path / "case.yaml"),
-            "--in",
-            "body_points",
-            "-q",
-            "-o",
-            str(tmp_path / "report"),
-        ],
-    )
-    assert done.exit_code == 2
+    options = "--in", "body_points", "-q", "-o", tmp_path / "report"
+    done = command("converge", tmp_path / "case.yaml", *options, code=2)
     assert words in done.stderr

@@ -4,10 +4,9 @@ import shutil
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from calls import call
 
 import rodsim
-from rodsim.cli import main
 from rodsim.scene.build import build_scene
 from rodsim.scene.system import RodSystem
 
@@ -29,18 +28,12 @@ LOOP = "{kind: ring, radius: 0.9, points: 23, twist_perturbation: 0.4}"
 TAIL = "{kind: helix, radius: 0.3, pitch: 0.8, points: 17, length: 2.0, origin: [0, 0, 2]}"
 
 
-def command(*arguments):
-    return CliRunner().invoke(main, [str(argument) for argument in arguments])
-
-
 @pytest.fixture
-def write(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-
+def write(here):
     def make(name="case.yaml", loop=LOOP, tail=TAIL, strain="[1.1, 0, 0.6]", unit="um", end=6e-4,
              epsilon=0.3):  # fmt: skip
         text = CASE.format(loop=loop, tail=tail, strain=strain, unit=unit, end=end, epsilon=epsilon)
-        (tmp_path / name).write_text(text)
+        (here / name).write_text(text)
         return name
 
     return make
@@ -48,7 +41,7 @@ def write(tmp_path, monkeypatch):
 
 @pytest.fixture
 def output(write):
-    result = command("run", write("first.yaml"), "-o", "first.h5")
+    result = call("run", write("first.yaml"), "-o", "first.h5")
     assert result.exit_code == 0, result.stderr
     return "first.h5"
 
@@ -65,7 +58,7 @@ def energies(name):
 @pytest.mark.parametrize("suffix", [".csv", ".npz", ".h5"])
 def test_exports_are_read_back_with_the_same_energies(write, output, suffix):
     if suffix != ".h5":
-        assert command("export", output, "-o", f"first{suffix}").exit_code == 0
+        assert call("export", output, "-o", f"first{suffix}").exit_code == 0
     closed = ", closed: true" if suffix == ".csv" else ""  # a .csv does not say it
     for frame in (-1, 1):
         shapes = [f"{{kind: file, path: first{suffix}, rod: {rod}, frame: {frame}{more}}}"
@@ -86,12 +79,12 @@ def test_outputs_in_other_units_are_converted_or_refused(write, output):
         assert np.allclose(scene.initial.position.T, 1000 * run.position[-1], rtol=1e-12, atol=0)
         assert scene.rods.spacing == pytest.approx([1000 * rod.spacing for rod in run.rods])
     assert "lengths are in um: multiplied by 1000 to nm" in str(scene.warnings[0])
-    result = command("validate", write("n.yaml", *shapes, unit="parsec"))
+    result = call("validate", write("n.yaml", *shapes, unit="parsec"))
     assert result.exit_code == 2
     assert "cannot be converted from um to parsec" in result.stderr
     as_is = [shape[:-1] + ", as_is: true}" for shape in shapes]
-    assert command("validate", write("n.yaml", *as_is, unit="parsec")).exit_code == 0
-    assert command("export", output, "-o", "first.csv").exit_code == 0
+    assert call("validate", write("n.yaml", *as_is, unit="parsec")).exit_code == 0
+    assert call("export", output, "-o", "first.csv").exit_code == 0
     text = [shape.replace(".h5", ".csv") for shape in shapes]
     text[0] = text[0][:-1] + ", closed: true}"
     scene = build_scene(rodsim.load_case(write("n.yaml", *text, unit="nm", strain="[0, 0, 0]")))
@@ -110,7 +103,7 @@ def test_outputs_in_other_units_are_converted_or_refused(write, output):
 )
 def test_what_stands_beside_an_output_must_agree(write, output, more, words):
     shape = f"{{kind: file, path: first.h5, rod: loop, {more}}}"
-    result = command("validate", write("next.yaml", shape))
+    result = call("validate", write("next.yaml", shape))
     assert (result.exit_code == 0) == (words is None)
     assert words is None or words in result.stderr
 
@@ -121,17 +114,17 @@ def test_a_frame_of_a_diverged_run_is_no_start(write):
         "d.yaml", tail="{kind: straight, points: 41, length: 10, perturbation: 0.2}", end=0.01
     )
     fixed = ("--set", "time.integrator=euler", "--set", "time.step=1e-4", "--force")
-    assert command("run", case, "-o", "d.h5", *fixed).exit_code == 3
+    assert call("run", case, "-o", "d.h5", *fixed).exit_code == 3
     shape = "{kind: file, path: d.h5, rod: loop, frame: 0}"
-    result = command("validate", write("next.yaml", shape))
+    result = call("validate", write("next.yaml", shape))
     assert result.exit_code == 2
     assert "path = d.h5: its run diverged" in result.stderr
-    assert command("validate", write("next.yaml", shape[:-1] + ", as_is: true}")).exit_code == 0
+    assert call("validate", write("next.yaml", shape[:-1] + ", as_is: true}")).exit_code == 0
 
 
 @pytest.mark.compiled
 def test_info_says_how_the_rods_start(write):
-    lines = command("info", write()).stdout
+    lines = call("info", write()).stdout
     assert "rod loop at t = 0: points 0.996" in lines  # sin(pi/23)/(pi/23) = 0.99689
     assert "rod tail at t = 0: energy" in lines
     bending = energies("case.yaml")[0, 1]
@@ -161,21 +154,21 @@ def test_a_run_goes_on_without_its_data_and_with_the_same_bits(write, tmp_path, 
         "curve": (curve, '[natural_1, "0.5*natural_2", "0.1*cos(3000*t)"]'),
     }[kind]
     case = write(loop=loop, strain=strain, end=1e-3)
-    assert command("run", case, "-o", "whole.h5").exit_code == 0
+    assert call("run", case, "-o", "whole.h5").exit_code == 0
 
     stops = iter(["", "", "a test"])
     with pytest.raises(rodsim.errors.StoppedError):
         rodsim.simulate(rodsim.load_case(case), "part.h5", stop=lambda: next(stops, "a test"))
     for name in ("ring.csv", "k.csv", "k3.csv"):
         (tmp_path / name).unlink()
-    assert command("resume", "part.h5").exit_code == 0
+    assert call("resume", "part.h5").exit_code == 0
     with rodsim.open_trajectory("whole.h5") as whole, rodsim.open_trajectory("part.h5") as part:
         for name in ("position", "director"):
             assert np.array_equal(whole.read(name), part.read(name))
-    flow = command("flow", "part.h5", "--at", "1e-3", "--grid", "plane:yz", "-o", "f.npz")
+    flow = call("flow", "part.h5", "--at", "1e-3", "--grid", "plane:yz", "-o", "f.npz")
     assert flow.exit_code == 0, flow.stderr
     plain = write("plain.yaml", end=1e-3)
-    assert command("run", plain, "-o", "plain.h5").exit_code == 0
+    assert call("run", plain, "-o", "plain.h5").exit_code == 0
     with rodsim.open_trajectory("plain.h5") as run:
         assert run.arrays("loop") == {}
 
@@ -193,7 +186,7 @@ def test_a_traced_wave_moves_a_rod_as_the_formula_does(write):
         ('["1.5*sin(4*s - 3000*t)", 0, 0]', f"[{{table: k.csv, period: {period!r}}}, 0, 0]")
     ):
         case = write(loop=straight, tail=TAIL, strain=strain, end=2.2 * period)
-        result = command("run", case, "-o", f"{number}.h5", "--set", "time.tolerance=1e-7")
+        result = call("run", case, "-o", f"{number}.h5", "--set", "time.tolerance=1e-7")
         assert result.exit_code == 0, result.stderr
         with rodsim.open_trajectory(f"{number}.h5") as run:
             ends.append(run.position[-1, :17])
@@ -216,16 +209,16 @@ def test_one_table_of_three_moves_a_rod_as_three_tables_do(write):
         "{table: all.csv}",
         "[{table: all.csv, columns: [s, t, k1]}, {table: k1.csv}, {table: k2.csv}]",
     ):
-        result = command("run", write(strain=strain, end=5e-4), "-o", "out.h5", "--overwrite")
+        result = call("run", write(strain=strain, end=5e-4), "-o", "out.h5", "--overwrite")
         assert result.exit_code == 0, result.stderr
         with rodsim.open_trajectory("out.h5") as run:
             ends.append(run.position[-1])
     assert np.array_equal(ends[0], ends[1])
     assert np.array_equal(ends[0], ends[2])
-    short = command("validate", write(strain="{table: all.csv}", end=2e-3))
+    short = call("validate", write(strain="{table: all.csv}", end=2e-3))
     assert short.exit_code == 2
     assert short.stderr.count("its times go from 0 to 0.001") == 1
-    planar = command("validate", write(strain="{table: all.csv}"), "--set", "plane=yz")
+    planar = call("validate", write(strain="{table: all.csv}"), "--set", "plane=yz")
     assert "Omega_2 must be the number 0 where plane is yz" in planar.stderr
 
 
@@ -233,10 +226,10 @@ def test_one_table_of_three_moves_a_rod_as_three_tables_do(write):
 def test_two_rods_far_apart_end_or_are_refused(write):
     """Rounding of the far one's positions over its spacing: 1e-3 is where it is refused."""
     far = "{kind: helix, radius: 0.3, pitch: 0.8, points: 17, length: 2.0, origin: [%g, 0, 2]}"
-    result = command("run", write(tail=far % 2e10), "-o", "far.h5")
+    result = call("run", write(tail=far % 2e10), "-o", "far.h5")
     assert result.exit_code == 0
     assert "small strains are lost" in result.stderr
-    result = command("run", write(tail=far % 2e12), "-o", "far.h5")
+    result = call("run", write(tail=far % 2e12), "-o", "far.h5")
     assert result.exit_code == 2
     assert "rods.tail.shape.origin" in result.stderr
     assert "are rounded to 0.002 of the spacing 0.125" in result.stderr

@@ -4,11 +4,10 @@ import json
 
 import numpy as np
 import pytest
+from calls import call
 from card import simulated
-from click.testing import CliRunner
 
 import rodsim
-from rodsim.cli import main
 from rodsim.convergence.side_by_side import Runs
 from rodsim.errors import CaseError, UsageError
 from rodsim.flows.card import device as devices
@@ -110,7 +109,7 @@ def test_the_file_names_the_device_and_the_cpu_leaves_no_trace(runs):
     on = "simulator"
     expected = {"whole": on, "same": on, "cpu": None, "to_cpu": "cpu", "to_gpu": on}
     assert found == expected
-    shown = CliRunner().invoke(main, ["info", str(folder / "whole.h5")]).output
+    shown = call("info", folder / "whole.h5").output
     assert "device: simulator" in shown
 
 
@@ -154,7 +153,7 @@ def test_without_a_card_the_command_says_what_to_do(runs, no_card, tmp_path, com
     given = folder / ("left.h5" if name in ("flow", "resume") else "case.yaml")
     output = [] if name == "resume" else ["-o", str(tmp_path / "out.png")]
     device = [] if name == "resume" else ["--device", "gpu"]
-    done = CliRunner().invoke(main, [name, str(given), *output, *device, *more])
+    done = call(name, given, *output, *device, *more)
     assert done.exit_code == 2, done.output
     assert "no GPU: no driver to be found; it takes an NVIDIA card" in done.output
     assert "pip install 'rodsim[gpu]'" in done.output

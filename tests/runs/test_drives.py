@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from test_resume import DRIVEN, make
+from interrupted import DRIVEN, make
 
 from rodsim import open_trajectory, simulate
 from rodsim.errors import CaseError, DivergedError

@@ -6,22 +6,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from calls import command, settings, told
 from outputs import POINTS, RODS, TIMES, TRACERS, create, frame, write
 from scenes import CONFIGS
 
 from rodsim import open_trajectory
 from rodsim.analysis.strain import strain_twist
-from rodsim.cli import main
 
 RING = str(CONFIGS / "closed_ring.yaml")
-
-
-def call(*arguments):
-    result = CliRunner().invoke(main, [str(argument) for argument in arguments])
-    assert result.exit_code == 0, result.output
-    assert result.stdout == ""
-    return result.stderr
+SHORT = "rods.ring.shape.points=40", "time.end=1e-3"
 
 
 @pytest.fixture
@@ -34,7 +27,7 @@ def output(tmp_path, monkeypatch):
 
 
 def test_csv_has_every_number(output):
-    assert "wrote a.csv\n" in call("export", output, "-o", "a.csv", "--every", 2)
+    assert "wrote a.csv\n" in told("export", output, "-o", "a.csv", "--every", 2)
     with open("a.csv", newline="") as stream:
         heads, *rows = csv.reader(stream)
     assert heads[:6] == ["frame", "time (s)", "rod", "point", "s (um)", "x (um)"]
@@ -52,7 +45,7 @@ def test_csv_has_every_number(output):
 
 
 def test_npz_is_the_whole_file(output):
-    call("export", output, "-o", "a.npz")
+    told("export", output, "-o", "a.npz")
     with np.load("a.npz") as arrays, open_trajectory(output) as run:
         assert np.array_equal(arrays["time"], TIMES)
         for name in run.fields:
@@ -81,7 +74,7 @@ def test_vtk_reads_the_rods_with_radius_and_triads(output):
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as Pipeline
 
-    call("export", output, "-o", "a.vtkhdf", "--radius", 0.13)
+    told("export", output, "-o", "a.vtkhdf", "--radius", 0.13)
     seen = 0
     for index, (data, reader) in enumerate(vtk_frames("a.vtkhdf")):
         fields, points = frame(index)[0], data.GetPointData()
@@ -105,7 +98,7 @@ def test_vtk_reads_the_rods_with_radius_and_triads(output):
 def test_vtk_reads_the_tracers(output):
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
-    call("export", output, "-o", "a.vtkhdf", "--tracers", "--every", 3)
+    told("export", output, "-o", "a.vtkhdf", "--tracers", "--every", 3)
     frames = [data for data, _ in vtk_frames("a.vtkhdf")]
     # The reader gives the same object again: what is in it now is its last step, frame 3.
     assert len(frames) == 2
@@ -120,9 +113,8 @@ def test_the_radius_is_that_of_the_cylinder_that_moves_alike(tmp_path, monkeypat
     from vtkmodules.vtkFiltersCore import vtkTubeFilter
 
     monkeypatch.chdir(tmp_path)
-    CliRunner().invoke(main, ["run", RING, "-q", "--set", "rods.ring.shape.points=40",
-                              "--set", "time.end=1e-3", "--set", f"fluid.blob={blob}"])  # fmt: skip
-    call("export", "out.h5", "-o", "a.vtkhdf")
+    told("run", RING, "-q", *settings(*SHORT, f"fluid.blob={blob}"))
+    told("export", "out.h5", "-o", "a.vtkhdf")
     *_, (data, reader) = vtk_frames("a.vtkhdf")
     epsilon = 4 * 2 * np.pi * 2.5 / 40
     radius = vtk_to_numpy(data.GetPointData().GetArray("radius"))
@@ -148,15 +140,14 @@ def test_vtk_reads_a_flow(tmp_path, monkeypatch):
 
     vtk_xml = pytest.importorskip("vtkmodules.vtkIOXML")
     monkeypatch.chdir(tmp_path)
-    CliRunner().invoke(main, ["run", RING, "-q", "--set", "rods.ring.shape.points=40",
-                              "--set", "time.end=1e-3"])  # fmt: skip
+    told("run", RING, "-q", *settings(*SHORT))
     for grid, shape in (
         ("box", None),
         ("0.5,-2:2:5,-1.5:1:6", (1, 5, 6)),
         ("0,0,-3:3:7", (1, 1, 7)),
     ):
         for name in ("a.vti", "a.npz", "a.csv"):
-            call("flow", "out.h5", "--at", "1e-3", "--grid", grid, "--resolution", 9, "-o", name)
+            told("flow", "out.h5", "--at", "1e-3", "--grid", grid, "--resolution", 9, "-o", name)
         reader = vtk_xml.vtkXMLImageDataReader()
         reader.SetFileName("a.vti")
         reader.Update()
@@ -180,16 +171,15 @@ def test_vtk_reads_a_flow(tmp_path, monkeypatch):
 
 
 def test_an_earlier_file_is_named_and_a_failed_one_leaves_it(output, monkeypatch):
-    call("export", output, "-o", "a.csv")
-    assert "wrote a.csv, in place of an earlier one" in call("export", output, "-o", "a.csv")
+    told("export", output, "-o", "a.csv")
+    assert "wrote a.csv, in place of an earlier one" in told("export", output, "-o", "a.csv")
     before = Path("a.csv").read_text()
 
     def interrupted(*arguments):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("rodsim.export.run._arc", interrupted)
-    result = CliRunner().invoke(main, ["export", str(output), "-o", "a.csv"])
-    assert result.exit_code == 75
+    command("export", output, "-o", "a.csv", code=75)
     assert Path("a.csv").read_text() == before
     assert sorted(p.name for p in output.parent.iterdir()) == ["a.csv", "out.h5"]
 
@@ -202,6 +192,5 @@ def test_an_earlier_file_is_named_and_a_failed_one_leaves_it(output, monkeypatch
     ],
 )
 def test_what_cannot_be_written_is_said(output, arguments, code, words):
-    result = CliRunner().invoke(main, ["export", str(output), *arguments])
-    assert result.exit_code == code
+    result = command("export", output, *arguments, code=code)
     assert words in result.stderr

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from contents import differences
+from interrupted import make, run_with_copies
 from scenes import system_from
-from test_resume import killed_at_every_step, make
 
 from rodsim import open_trajectory, resume, simulate
 from rodsim.analysis.replay import Replay
@@ -61,11 +61,7 @@ output: {{interval: 2.0e-4}}
 def whole(request, tmp_path_factory):
     """A scene and its run, with a copy of the file after every step."""
     folder = tmp_path_factory.mktemp("whole")
-    (folder / "killed").mkdir()
-    path = folder / "out.h5"
-    simulate(make(folder, request.param), path, stop=killed_at_every_step(path, folder / "killed"))
-    copies = sorted(folder.glob("killed/*.h5"), key=lambda name: int(name.stem))
-    return request.param, path, copies
+    return request.param, *run_with_copies(make(folder, request.param), folder)[:2]
 
 
 def test_a_run_goes_on_with_the_same_bits(whole):

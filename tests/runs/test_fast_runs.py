@@ -4,10 +4,10 @@ import csv
 
 import numpy as np
 import pytest
+from calls import call
 from contents import differences
+from interrupted import make, run_with_copies
 from scenes import system_from
-from test_commands import call
-from test_resume import killed_at_every_step, make
 
 from rodsim import open_trajectory, resume, simulate
 from rodsim.compiled.parts import FLOW
@@ -39,10 +39,7 @@ ENERGIES = ("bending", "twisting", "shear", "stretch")
 def whole(tmp_path_factory):
     """A run, with a copy of its file after every step."""
     folder = tmp_path_factory.mktemp("whole")
-    (folder / "killed").mkdir()
-    path = folder / "out.h5"
-    simulate(make(folder, SCENE), path, stop=killed_at_every_step(path, folder / "killed"))
-    return path, sorted(folder.glob("killed/*.h5"), key=lambda name: int(name.stem))
+    return run_with_copies(make(folder, SCENE), folder)[:2]
 
 
 @pytest.mark.compiled

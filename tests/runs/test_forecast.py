@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from calls import command
 from scenes import CONFIGS, load
 
 from rodsim import open_trajectory, simulate
-from rodsim.cli import main
 from rodsim.commands.costs import span
 from rodsim.integrators.fastest_rate import FastestRate
 from rodsim.run.forecast import forecast
@@ -21,12 +20,6 @@ pytestmark = pytest.mark.compiled
 
 def machine_of(case):
     return Machine(case, build_scene(case), False)
-
-
-def text_of(*arguments):
-    done = CliRunner().invoke(main, [str(a) for a in arguments])
-    assert done.exit_code == 0, done.output
-    return done.stdout
 
 
 @pytest.mark.parametrize(
@@ -117,15 +110,15 @@ def test_a_scene_that_no_modulus_makes_stiff():
     case = load("tethered_pair", "tethers.top.stiffness=1e4")
     scene = build_scene(case)
     assert stiffest(scene, rate_of(scene)).names == ()
-    assert "no modulus sets the fastest rate" in text_of(
-        "info", CONFIGS / "tethered_pair.yaml", "--set", "tethers.top.stiffness=1e4"
-    )
+    stiff = "--set", "tethers.top.stiffness=1e4"
+    said = command("info", CONFIGS / "tethered_pair.yaml", *stiff).stdout
+    assert "no modulus sets the fastest rate" in said
 
 
-@pytest.mark.parametrize("command", [("info",), ("run", "--dry-run")])
-def test_the_commands_say_it(command):
+@pytest.mark.parametrize("words", [("info",), ("run", "--dry-run")])
+def test_the_commands_say_it(words):
     case = CONFIGS / "open_rod.yaml"
-    said = text_of(*command, case)
+    said = command(*words, case).stdout
     assert "run: about " in said
     assert "evaluations of" in said
     assert ", 101 frames" in said
@@ -134,8 +127,8 @@ def test_the_commands_say_it(command):
         "shear and stretch set the fastest rate: a quarter of them would leave 0.25 of it" in said
     )
     fixed = ("--set", "time.integrator=euler", "--set", "time.step=1e-6")
-    assert "the longest stable step be 4 times as long" in text_of(*command, case, *fixed)
-    assert "on 1 thread, " in text_of("run", "--dry-run", "--threads", 1, case)
+    assert "the longest stable step be 4 times as long" in command(*words, case, *fixed).stdout
+    assert "on 1 thread, " in command("run", "--dry-run", "--threads", 1, case).stdout
 
 
 @pytest.mark.parametrize(

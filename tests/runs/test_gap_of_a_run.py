@@ -5,12 +5,11 @@ import shutil
 import h5py
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from calls import command
 from contents import differences
 from twins import gap
 
 from rodsim import load_case, open_trajectory, resume, simulate
-from rodsim.cli import main
 from rodsim.errors import StoppedError
 
 CASE = """\
@@ -83,8 +82,7 @@ def test_the_last_lines_and_info_say_how_small_it_got(whole):
     lines = [f"{least}; the rods are 0.364 um thick", *summary.endings[1:]]
     assert summary.endings == lines
     assert lines[1].startswith("still moving: fastest point ")
-    info = CliRunner().invoke(main, ["info", str(folder / "out.h5")])
-    assert info.exit_code == 0
+    info = command("info", folder / "out.h5")
     assert all(line in info.stdout.splitlines() for line in lines)
 
 
@@ -110,7 +108,7 @@ def test_a_file_from_before_there_was_a_gap_is_read_and_goes_on(whole, tmp_path)
         with h5py.File(old, "r+", locking=False) as file:
             del file["observables/gap"]
             same = int(file["committed"][()]) if overrides else 41  # another end, other steps to it
-        assert CliRunner().invoke(main, ["info", str(old), "--check"]).exit_code == 0
+        command("info", old, "--check")
         end = resume(old, overrides=overrides, notify=list)
         assert end.status == "finished"
         with open_trajectory(old) as run, open_trajectory(folder / "out.h5") as new:
@@ -127,11 +125,10 @@ def test_rods_that_start_too_close_are_said_at_once(tmp_path):
     assert "are 0.304 um apart at t = 0 s" in said[0]  # sqrt(0.05^2 + 0.3^2)
 
 
-@pytest.mark.parametrize("command", ["validate", "run"])
-def test_rods_in_one_place_are_refused(tmp_path, command):
+@pytest.mark.parametrize("name", ["validate", "run"])
+def test_rods_in_one_place_are_refused(tmp_path, name):
     (tmp_path / "case.yaml").write_text(CASE.replace("[0.05, 0.5, 0]", "[0, 0, 0]"))
-    done = CliRunner().invoke(main, [command, str(tmp_path / "case.yaml")])
-    assert done.exit_code == 2
+    done = command(name, tmp_path / "case.yaml", code=2)
     assert "case.yaml:4: rods.a.shape" in done.stderr
     assert "point 0 lies on point 0 of rod 'b'" in done.stderr
 

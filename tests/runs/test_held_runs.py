@@ -4,14 +4,13 @@ import shutil
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from calls import command
 from contents import differences
 
 from rodsim import load_case, open_trajectory, resume, simulate
 from rodsim.blocks.hull import triangles as triangles_of
 from rodsim.blocks.surface import surface_of
 from rodsim.blocks.words import Spherocylinder
-from rodsim.cli import main
 from rodsim.output.verify import verify
 from rodsim.scene.build import build_scene
 from rodsim.scene.quaternions import to_matrix
@@ -145,8 +144,7 @@ def test_the_commands_read_it(whole, tmp_path):
     for arguments in (["info", path, "--check"], ["energy", path],
                       ["export", path, "-o", tmp_path / "out.csv"],
                       ["export", path, "-o", tmp_path / "out.npz"]):  # fmt: skip
-        done = CliRunner().invoke(main, [str(argument) for argument in arguments])
-        assert done.exit_code == 0, done.output
+        command(*arguments)
 
 
 def test_a_rod_starts_from_such_an_output(whole, tmp_path):
@@ -209,7 +207,7 @@ def test_paraview_sees_the_surface(towed, tmp_path):
     from vtkmodules.vtkIOHDF import vtkHDFReader
 
     exported = tmp_path / "out.vtkhdf"
-    assert CliRunner().invoke(main, ["export", str(towed), "-o", str(exported)]).exit_code == 0
+    command("export", towed, "-o", exported)
     with open_trajectory(towed) as run:
         position, surfaces, triangles = run.position, run.surfaces(), run.triangles
     for path in (towed, exported):
@@ -260,5 +258,4 @@ def test_movies_and_flow_pictures_of_bodies_are_written(towed, tmp_path):
     grid = "0.1,-1:2:9,-1:3:9"
     for words in (["plot", towed, "-n", "2", "-o", tmp_path / "shapes.gif"],
                   ["flow", towed, "--grid", grid, "-o", tmp_path / "flow.png"]):  # fmt: skip
-        done = CliRunner().invoke(main, [str(word) for word in words])
-        assert done.exit_code == 0, done.output
+        command(*words)

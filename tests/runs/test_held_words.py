@@ -4,10 +4,9 @@ import re
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from calls import command
 
 from rodsim import load_case, open_trajectory
-from rodsim.cli import main
 from rodsim.commands.held import spheroid_factors
 from rodsim.scene.build import build_scene
 from rodsim.scene.series import row_labels
@@ -43,21 +42,15 @@ def case(tmp_path_factory):
     return path
 
 
-def call(*words):
-    done = CliRunner().invoke(main, [str(word) for word in words])
-    assert done.exit_code == 0, done.output
-    return done
-
-
 def test_a_hook_stiffer_than_a_segment_is_told(case):
-    said = call("validate", case).stderr
+    said = command("validate", case).stderr
     assert "rods.tail.start.hook.bending = 0.02" in said
     assert "a/ds = 0.0159" in said  # 3.5e-3/0.22
-    assert call("validate", case, "--set", "rods.tail.start.hook.bending=0.015").stderr == ""
+    assert command("validate", case, "--set", "rods.tail.start.hook.bending=0.015").stderr == ""
 
 
 def test_info_compares_bodies_with_the_exact_formulas(case):
-    lines = call("info", case).stdout.splitlines()
+    lines = command("info", case).stdout.splitlines()
     ball = [line for line in lines if line.startswith("body ball")]
     assert "sphere, 100 points" in ball[0]
     assert "fixed" in ball[0]
@@ -106,7 +99,7 @@ def test_a_file_says_whose_its_rows_are(case, tmp_path):
     path = tmp_path / "out.h5"
     alone = ("bodies.ball=null", "bodies.cell.motion=fixed", "bodies.cell.shape.points=20",
              "rods.cilium.end=null")  # fmt: skip
-    call("run", case, "-o", path, "-q", *(word for key in alone for word in ("--set", key)))
+    command("run", case, "-o", path, "-q", *(word for key in alone for word in ("--set", key)))
     with open_trajectory(path) as run:
         assert run.labels("anchor_force") == ["cell"]
         assert run.labels("motor_torque") == run.labels("hook_energy") == ["tail.start"]
@@ -114,7 +107,7 @@ def test_a_file_says_whose_its_rows_are(case, tmp_path):
         assert run.labels("power") == ["tail", "cilium"]
         assert run.labels("net_force") == []
         assert run.observable("anchor_force").shape == (run.frames, 1, 3)
-    said = call("info", path).stdout
+    said = command("info", path).stdout
     assert "anchor_force of cell" in said
     assert "motor_torque of tail.start" in said
     assert "body cell: 20 points" in said

@@ -5,11 +5,10 @@ import shutil
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from calls import command
 from contents import differences
 
 from rodsim import load_case, open_trajectory, resume, simulate
-from rodsim.cli import main
 from rodsim.errors import CaseError, FileError
 from rodsim.scene.build import build_scene
 
@@ -204,9 +203,7 @@ def test_the_command_says_where_it_begins(bent, tmp_path):
 
     (tmp_path / "beam.yaml").write_text(yaml.safe_dump(BEAM))
     out = tmp_path / "out.h5"
-    words = ["run", tmp_path / "beam.yaml", "--from", bent, "-o", out, "-q"]
-    done = CliRunner().invoke(main, [str(word) for word in words])
-    assert done.exit_code == 0, done.stderr
+    command("run", tmp_path / "beam.yaml", "--from", bent, "-o", out, "-q")
     with open_trajectory(out) as run:
         assert run.case_data()["initial"] == {"path": str(bent), "frame": -1}
         assert "initial.path" in run.inputs

@@ -5,10 +5,9 @@ import json
 import h5py
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from calls import call
 
 from rodsim import load_case, open_trajectory, resume, simulate
-from rodsim.cli import main
 from rodsim.convergence.study import Study
 from rodsim.errors import FileError, StoppedError
 from rodsim.scene.inputs import CHANGED, GONE, SAME, case_digests, compare_inputs
@@ -46,22 +45,17 @@ def table(path, bend=0.05):
 
 
 @pytest.fixture
-def here(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "relax.yaml").write_text(RELAX)
-    (tmp_path / "case.yaml").write_text(FROM.replace("PATH", "relax.h5"))
-    (tmp_path / "text.yaml").write_text(FROM.replace("PATH", "rod.txt, spacing: 0.4, as_is: true"))
+def here(here):
+    (here / "relax.yaml").write_text(RELAX)
+    (here / "case.yaml").write_text(FROM.replace("PATH", "relax.h5"))
+    (here / "text.yaml").write_text(FROM.replace("PATH", "rod.txt, spacing: 0.4, as_is: true"))
     table("rod.txt")
-    return tmp_path
+    return here
 
 
 def relax(twist="0.3"):
     case = load_case("relax.yaml", [f"rods.a.strain_twist=[{twist}, 0, 0]"])
     simulate(case, "relax.h5", overwrite=True)
-
-
-def call(*arguments):
-    return CliRunner().invoke(main, [str(argument) for argument in arguments])
 
 
 def states(name, before):

@@ -5,14 +5,13 @@ import re
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from calls import command
 from scenes import CONFIGS
 
 from rodsim import load_case, open_trajectory, resume, simulate
 from rodsim.analysis import measuring
 from rodsim.analysis.curve import length
 from rodsim.analysis.swimming import swimming_velocity, towing_drag
-from rodsim.cli import main
 from rodsim.errors import UsageError
 from rodsim.flows.velocity import velocity
 from rodsim.scene.restore import restore_scene
@@ -38,15 +37,9 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture
-def here(folder, monkeypatch, tmp_path):
-    monkeypatch.chdir(tmp_path)
+def here(folder, here):
+    """The two, from an empty folder."""
     return folder
-
-
-def call(*arguments, code=0):
-    result = CliRunner().invoke(main, [str(argument) for argument in arguments])
-    assert result.exit_code == code, result.output
-    return result
 
 
 def numbers(text):
@@ -56,7 +49,7 @@ def numbers(text):
 
 def test_speed_and_power_of_each_of_two_swimmers(here):
     names = ("speed", "power", "efficiency")
-    found = numbers(call("measure", here / "anti.h5", *names, "--period", "period").stdout)
+    found = numbers(command("measure", here / "anti.h5", *names, "--period", "period").stdout)
     with open_trajectory(here / "anti.h5") as run:
         for rod in run.rods:
             swim = swimming_velocity(run.time, run.position[:, rod.nodes], PERIOD)
@@ -68,7 +61,7 @@ def test_speed_and_power_of_each_of_two_swimmers(here):
     assert found["left.efficiency"] == pytest.approx(exact, rel=1e-5)
     # Mirror images of each other swim alike; in phase they are slower and need less.
     assert found["left.speed"] == pytest.approx(found["right.speed"], rel=1e-3)
-    phase = numbers(call("measure", here / "phase.h5", *names, "--period", "period").stdout)
+    phase = numbers(command("measure", here / "phase.h5", *names, "--period", "period").stdout)
     assert phase["left.speed"] < 0.8 * found["left.speed"]
     assert phase["left.power"] < 0.95 * found["left.power"]
 
@@ -118,7 +111,7 @@ def test_a_sweep_has_the_same_numbers_in_its_columns(here, tmp_path):
         rows = list(csv.DictReader(stream))
     own = ["speed", "right.power", "velocity", "gap", "elastic_energy"]
     for row, path in zip(rows, paths, strict=True):
-        found = numbers(call("measure", path, *own, "--period", "period").stdout)
+        found = numbers(command("measure", path, *own, "--period", "period").stdout)
         assert len(found) == 2 + 1 + 6 + 1 + 2
         for name, value in found.items():
             head = next(head for head in row if head.partition(" (")[0] == name)
@@ -161,7 +154,7 @@ def test_what_is_no_number_is_an_empty_cell(here, tmp_path):
     ],
 )
 def test_a_wrong_name_shows_before_the_runs(here, name, words):
-    done = call("sweep", CONFIGS / "two_flagella.yaml", "--set", "parameters.d=[2, 3]",
+    done = command("sweep", CONFIGS / "two_flagella.yaml", "--set", "parameters.d=[2, 3]",
                 "--measure", f"gap,{name}", "--list", code=2)  # fmt: skip
     assert words in done.stderr
 
@@ -204,7 +197,7 @@ def labels(axis, notes=False):
 
 
 def test_several_runs_in_one_picture(here, figures):
-    call("plot", here / "anti.h5", here / "phase.h5", "-w", "left.power,energy", "-o", "p.png")
+    command("plot", here / "anti.h5", here / "phase.h5", "-w", "left.power,energy", "-o", "p.png")
     power, energy = figures[0].axes
     assert labels(power) == ["anti", "phase"]
     assert labels(energy) == ["anti left", "anti right", "phase left", "phase right"]
@@ -225,12 +218,12 @@ def test_runs_are_named_by_what_is_not_common_in_their_paths(here, figures, tmp_
     for name in ("b=1", "b=2"):
         (tmp_path / "sweep" / name).mkdir(parents=True)
         (tmp_path / "sweep" / name / "out.h5").write_bytes((here / "anti.h5").read_bytes())
-    call("plot", "sweep/b=1/out.h5", "sweep/b=2/out.h5", "-w", "left.amplitude", "-o", "p.png")
+    command("plot", "sweep/b=1/out.h5", "sweep/b=2/out.h5", "-w", "left.amplitude", "-o", "p.png")
     assert labels(figures[0].axes[0]) == ["b=1", "b=2"]
 
 
 def test_one_run_has_a_curve_for_each_rod(here, figures):
-    call("measure", here / "anti.h5", "velocity", "gap", "--plot", "p.png")
+    command("measure", here / "anti.h5", "velocity", "gap", "--plot", "p.png")
     velocity, gap = figures[0].axes
     assert labels(velocity) == [f"{rod} {c}" for rod in ("left", "right") for c in "xyz"]
     assert len({(line.get_color(), line.get_linestyle()) for line in velocity.lines}) == 6
@@ -246,16 +239,18 @@ def test_one_run_has_a_curve_for_each_rod(here, figures):
     ],
 )
 def test_pictures_that_cannot_be_are_refused(here, what, files, words):
-    assert words in call("plot", *[here / "anti.h5", here / "phase.h5"][:files], "-w", what,
+    assert words in command("plot", *[here / "anti.h5", here / "phase.h5"][:files], "-w", what,
                          "-o", "p.png", code=2).stderr  # fmt: skip
 
 
 def test_the_same_run_twice_and_other_units_are_refused(here, tmp_path):
-    twice = call("plot", here / "anti.h5", here / "anti.h5", "-w", "power", "-o", "p.png", code=2)
+    twice = command(
+        "plot", here / "anti.h5", here / "anti.h5", "-w", "power", "-o", "p.png", code=2
+    )
     assert "is given twice" in twice.stderr
     simulate(load_case(CONFIGS / "two_flagella.yaml",
                        [*FLAGELLA, "time.end=period/12", "units.length=mm"]), "mm.h5")  # fmt: skip
-    other = call("plot", here / "anti.h5", "mm.h5", "-w", "amplitude", "-o", "p.png", code=2)
+    other = command("plot", here / "anti.h5", "mm.h5", "-w", "amplitude", "-o", "p.png", code=2)
     assert "mm.h5: is in other units than" in other.stderr
 
 
@@ -263,7 +258,7 @@ def test_the_same_run_twice_and_other_units_are_refused(here, tmp_path):
 
 
 def test_the_csv_of_energies_has_every_rod(here, tmp_path):
-    call("energy", here / "anti.h5", "--csv", "e.csv", "--kT", "298")
+    command("energy", here / "anti.h5", "--csv", "e.csv", "--kT", "298")
     with open("e.csv", newline="") as stream:
         row = list(csv.DictReader(stream))[7]
     with open_trajectory(here / "anti.h5") as run:
@@ -273,7 +268,7 @@ def test_the_csv_of_energies_has_every_rod(here, tmp_path):
 
 
 def test_info_says_what_the_case_was(here):
-    lines = call("info", here / "anti.h5").stdout.splitlines()
+    lines = command("info", here / "anti.h5").stdout.splitlines()
     assert lines[3] == "Two flagella in opposite phase"
     assert lines[4].startswith("fluid: viscosity 1e-06 g um^-1 s^-1 (1 mPa s), algebraic7, epsilon")
     assert lines[6].endswith("; bending 0.035, twisting 0.035 g um^3 s^-2; shear 0.8, stretch 0.8 "
@@ -310,7 +305,7 @@ def test_a_run_until_still_ends_where_nothing_moves(tmp_path):
         bend = run.observable("bending_energy")[:, 0]
         assert bend[-1] < 1e-6 * bend[0]
     assert summary.endings[-1].startswith("nothing moves any more: fastest point")
-    assert "nothing moves any more" in call("info", tmp_path / "out.h5", "--check").stdout
+    assert "nothing moves any more" in command("info", tmp_path / "out.h5", "--check").stdout
     whole = simulate(case, tmp_path / "whole.h5")
     assert resume(tmp_path / "out.h5").frames == whole.frames
     ended = []
@@ -332,7 +327,9 @@ def test_a_run_until_still_that_is_stopped_ends_at_the_same_frame(tmp_path):
 
 
 def test_what_is_driven_is_never_still(tmp_path):
-    done = call("run", CONFIGS / "flagellum.yaml", "--until", "still", "-o", tmp_path / "x", code=2)
+    done = command(
+        "run", CONFIGS / "flagellum.yaml", "--until", "still", "-o", tmp_path / "x", code=2
+    )
     assert "the scene is driven, so it never comes to rest" in done.stderr
     assert not (tmp_path / "x").exists()
     with pytest.raises(UsageError, match="until 'stil'"):

@@ -9,10 +9,8 @@ import types
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from calls import command
 from outputs import CASE, RODS, TIMES, create, write
-
-from rodsim.cli import main
 
 pytest.importorskip("vtkmodules.vtkIOHDF")
 RADIUS, HEIGHT = 0.013, -9.0
@@ -44,9 +42,7 @@ def state(tmp_path, monkeypatch):
     with create(tmp_path / "out.h5", case=type(CASE)("", text, [])) as writer:
         write(writer, range(len(TIMES)))
         writer.finish("finished", {})
-    arguments = ["export", tmp_path / "out.h5", "-o", tmp_path / "a.py", "--radius", RADIUS]
-    result = CliRunner().invoke(main, [str(argument) for argument in arguments])
-    assert result.exit_code == 0, result.output
+    command("export", tmp_path / "out.h5", "-o", tmp_path / "a.py", "--radius", RADIUS)
     made, simple = {}, types.ModuleType("paraview.simple")
     for name in ("GetActiveViewOrCreate", "VTKHDFReader", "GetAnimationScene", "Tube", "Show",
                  "ColorBy", "Plane", "ResetCamera", "Render"):  # fmt: skip

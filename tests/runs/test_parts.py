@@ -5,16 +5,15 @@ import shutil
 import h5py
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from calls import command
 from contents import differences
-from test_resume import killed_at_every_step
+from interrupted import make, run_with_copies
 
 from rodsim import load_case, open_trajectory, resume, simulate
 from rodsim.analysis.energy import energy_table
 from rodsim.analysis.flow import flow_at, tracer_paths
 from rodsim.analysis.grid import make_grid
 from rodsim.analysis.replay import Replay
-from rodsim.cli import main
 
 MODULI = "moduli: {bending: 3.5e-3, twisting: 2.5e-3, shear: 0.7, stretch: 0.9}"
 SCENE = f"""
@@ -46,12 +45,8 @@ FIXED = ("time.integrator=rk4", "output.interval=1e-5", "time.end=4e-5", "time.s
 def unbroken(request, tmp_path_factory):
     """A run, and copies of its file after every step."""
     folder = tmp_path_factory.mktemp("unbroken")
-    (folder / "killed").mkdir()
-    (folder / "case.yaml").write_text(SCENE)
-    case = load_case(folder / "case.yaml", FIXED if request.param == "rk4" else ())
-    simulate(case, folder / "out.h5", stop=killed_at_every_step(folder / "out.h5",
-                                                                    folder / "killed"))  # fmt: skip
-    return folder / "out.h5", sorted(folder.glob("killed/*.h5"), key=lambda path: int(path.stem))
+    case = make(folder, SCENE, FIXED if request.param == "rk4" else ())
+    return run_with_copies(case, folder)[:2]
 
 
 def test_a_killed_run_goes_on_with_the_same_bits_on_any_threads(unbroken, tmp_path):
@@ -97,8 +92,7 @@ def test_the_energy_table_has_tethers_and_the_ledger(tmp_path):
 
 def test_info_lists_what_acts(tmp_path):
     (tmp_path / "case.yaml").write_text(SCENE)
-    result = CliRunner().invoke(main, ["info", str(tmp_path / "case.yaml")])
-    assert result.exit_code == 0, result.stderr
+    result = command("info", tmp_path / "case.yaml")
     acting = "acting: elastic (driven), loads (driven), tethers, fluid, flow (driven)\n"
     assert acting in result.stdout
 
@@ -157,18 +151,15 @@ def test_tracers_of_the_run_and_of_the_flow_command_go_the_same_way(tmp_path):
 def test_the_flow_of_a_later_frame_and_its_tracers_by_the_command(unbroken, tmp_path):
     """Of frames inside long steps the rods settle first, ledger and all."""
     for options in (["-o", "flow.png"], ["--tracers", "-o", "paths.csv"]):
-        folder = ["-o", str(tmp_path / options[options.index("-o") + 1])]
+        folder = ["-o", tmp_path / options[options.index("-o") + 1]]
         options = [o for o in options if o not in ("-o", "flow.png", "paths.csv")]
-        result = CliRunner().invoke(main, ["flow", str(unbroken[0]), *options, *folder])
-        assert result.exit_code == 0, result.output
+        command("flow", unbroken[0], *options, *folder)
 
 
 def test_the_flow_command_says_where_a_pressure_is_left_out(tmp_path):
     text = SCENE.replace("90*z*cos(700*t)", "90*sin(z)")
     (tmp_path / "case.yaml").write_text(text)
     simulate(load_case(tmp_path / "case.yaml", ["time.end=1e-6"]), tmp_path / "out.h5")
-    command = ["flow", str(tmp_path / "out.h5"), "--at", "0", "--grid", "0,-1:1:3,-1:1:3",
-               "-o", str(tmp_path / "flow.csv")]  # fmt: skip
-    result = CliRunner().invoke(main, command)
-    assert result.exit_code == 0, result.stderr
-    assert "pressure: without that of fluid.flow" in result.stderr
+    said = command("flow", tmp_path / "out.h5", "--at", 0, "--grid", "0,-1:1:3,-1:1:3",
+                   "-o", tmp_path / "flow.csv").stderr  # fmt: skip
+    assert "pressure: without that of fluid.flow" in said

@@ -5,12 +5,11 @@ import sys
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from calls import command, settings, told
 from drawn import faults
 from scenes import CONFIGS
 
 from rodsim import open_trajectory
-from rodsim.cli import main
 from rodsim.nodes import lay_out
 from rodsim.plotting.camera import VIEWS, make_camera
 from rodsim.plotting.directors import chosen_points, draw_directors
@@ -31,23 +30,14 @@ SETS = {
 def runs(tmp_path_factory):
     folder = tmp_path_factory.mktemp("runs")
     for name, (case, *sets) in SETS.items():
-        options = [word for text in sets for word in ("--set", text)]
-        done = CliRunner().invoke(main, ["run", case, "-q", "-o", str(folder / name), *options])
-        assert done.exit_code == 0, done.output
+        command("run", case, "-q", "-o", folder / name, *settings(*sets))
     return folder
 
 
 @pytest.fixture
-def here(runs, monkeypatch, tmp_path):
-    monkeypatch.chdir(tmp_path)
+def here(runs, here):
+    """The runs, from an empty folder."""
     return runs
-
-
-def call(*arguments, code=0):
-    result = CliRunner().invoke(main, [str(argument) for argument in arguments])
-    assert result.exit_code == code, result.output
-    assert result.stdout == ""
-    return result.stderr
 
 
 @pytest.fixture
@@ -86,7 +76,7 @@ def uncut(monkeypatch):
     ],
 )
 def test_stills_are_uncut_and_labelled(name, options, words, here, uncut):
-    assert call("plot", here / name, "-o", "a.png", *options) == "wrote a.png\n"
+    assert told("plot", here / name, "-o", "a.png", *options) == "wrote a.png\n"
     assert words <= set(uncut[0])
 
 
@@ -103,14 +93,14 @@ def test_stills_are_uncut_and_labelled(name, options, words, here, uncut):
     ],
 )
 def test_flows_are_uncut_and_labelled(grid, options, words, here, uncut):
-    call("flow", here / "ring.h5", "--grid", grid, "-o", "f.png", *options)
+    told("flow", here / "ring.h5", "--grid", grid, "-o", "f.png", *options)
     assert words <= set(uncut[0])
 
 
 def test_every_format_is_what_its_name_says(here):
     heads = {"png": b"\x89PNG", "pdf": b"%PDF", "svg": b"<?xml", "gif": b"GIF89a"}
     for kind, head in heads.items():
-        call("plot", here / "tail.h5", "-o", f"a.{kind}", "-n", "2")
+        told("plot", here / "tail.h5", "-o", f"a.{kind}", "-n", "2")
         with open(f"a.{kind}", "rb") as stream:
             assert stream.read(len(head)) == head
 
@@ -121,7 +111,7 @@ def test_movies_have_every_frame(here, tmp_path):
     imageio_ffmpeg = pytest.importorskip("imageio_ffmpeg")
     with open_trajectory(here / "tail.h5") as run:
         frames = run.frames
-    said = call("plot", here / "tail.h5", "-o", "a.gif", "--fps", "10", "--dpi", "80")
+    said = told("plot", here / "tail.h5", "-o", "a.gif", "--fps", "10", "--dpi", "80")
     assert said.endswith("wrote a.gif\n")
     with Image.open("a.gif") as movie:
         assert movie.n_frames == frames
@@ -130,7 +120,7 @@ def test_movies_have_every_frame(here, tmp_path):
         movie.seek(frames - 1)
         shades.append(np.asarray(movie.convert("L")))
     assert (shades[0] != shades[1]).sum() > 100  # it moves
-    call("plot", here / "tail.h5", "-o", "a.mp4", "--fps", "10", "--dpi", "50", "-q")
+    told("plot", here / "tail.h5", "-o", "a.mp4", "--fps", "10", "--dpi", "50", "-q")
     count, seconds = imageio_ffmpeg.count_frames_and_secs("a.mp4")
     assert (count, seconds) == (frames, pytest.approx(frames / 10, abs=0.11))
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.gif", "a.mp4"]
@@ -150,14 +140,14 @@ def test_an_interrupted_movie_leaves_the_earlier_one(name, here, tmp_path, monke
         return draw(shapes, axis, camera, frame)
 
     monkeypatch.setattr(Shapes, "draw", draw_two)
-    assert "interrupted" in call("plot", here / "tail.h5", "-o", name, code=75)
+    assert "interrupted" in told("plot", here / "tail.h5", "-o", name, code=75)
     assert [path.name for path in tmp_path.iterdir()] == [name]
     assert (tmp_path / name).read_text() == "earlier"
 
 
 def test_a_replaced_picture_is_said(here, tmp_path):
     (tmp_path / "a.png").write_text("earlier")
-    said = call("plot", here / "tail.h5", "-o", "a.png", "-w", "energy")
+    said = told("plot", here / "tail.h5", "-o", "a.png", "-w", "energy")
     assert said == "wrote a.png, in place of an earlier one\n"
 
 
@@ -182,7 +172,7 @@ def test_a_replaced_picture_is_said(here, tmp_path):
 )
 def test_what_cannot_be_drawn_is_said_in_one_line(arguments, code, words, here, tmp_path):
     command, *options = arguments
-    said = call(command, here / "ring.h5", *options, code=code)
+    said = told(command, here / "ring.h5", *options, code=code)
     assert words in said
     assert len(said.splitlines()) == 1
     assert list(tmp_path.iterdir()) == []
@@ -190,7 +180,7 @@ def test_what_cannot_be_drawn_is_said_in_one_line(arguments, code, words, here, 
 
 def test_what_is_not_installed_is_named(here, monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
-    said = call("plot", here / "ring.h5", "-o", "a.png", "-w", "energy", code=2)
+    said = told("plot", here / "ring.h5", "-o", "a.png", "-w", "energy", code=2)
     assert "pip install 'rodsim[plot]'" in said
 
 

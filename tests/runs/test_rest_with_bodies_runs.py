@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from test_commands import call
-from test_resume import make
+from calls import call
+from interrupted import make
 
 from rodsim import open_trajectory, simulate
 from rodsim.scene.restore import restore_scene

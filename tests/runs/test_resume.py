@@ -10,43 +10,14 @@ from contextlib import suppress
 import h5py
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from calls import call, command
 from contents import differences
+from interrupted import DRIVEN, PLANAR, after, make, run_with_copies
 
 from rodsim import load_case, open_trajectory, resume, simulate
-from rodsim.cli import main
 from rodsim.compiled.settings import machine
 from rodsim.errors import CaseError, FileError, StoppedError
 
-MODULI = "moduli: {bending: 3.5e-3, twisting: 2.5e-3, shear: 0.7, stretch: 0.9}"
-DRIVEN = f"""
-fluid: {{viscosity: 1.3e-6, epsilon: 0.3, density: 2.0e-12}}
-rods:
-  tail:
-    shape: {{kind: straight, points: 12, spacing: 0.11, perturbation: 1.0e-4}}
-    {MODULI}
-    strain_twist: ["1.3*sin(3*s + 900*t)", 0, 0.4]
-  ring:
-    shape: {{kind: ring, radius: 0.4, points: 14, origin: [0.2, 1.1, 0.3], twist_perturbation: 0.7}}
-    {MODULI}
-    strain_twist: [1.2, 0, 0.6]
-tracers:
-  here: [[0.3, 0.4, 0.5], [0.7, 0.2, 0.1]]
-  tube: {{kind: tube, rod: ring, radius: 0.2, around: 3, along: 5}}
-time: {{end: 7.3e-3, tolerance: 1.0e-5}}
-output: {{interval: 5.0e-4, fields: [position, director, velocity, torque]}}
-"""
-PLANAR = f"""
-fluid: {{viscosity: 1.3e-6, epsilon: 0.3, blob: algebraic9}}
-rods:
-  tail:
-    shape: {{kind: straight, points: 24, spacing: 0.11}}
-    {MODULI}
-    strain_twist: [1.3, 0, 0]
-plane: yz
-time: {{end: 1.1e-2, tolerance: 1.0e-5}}
-output: {{interval: 7.0e-4, fields: [position]}}
-"""
 FIXED = ("output.interval=1e-5", "time.end=1e-4", "time.step=1e-6")
 SCENES = {
     "driven rkc": (DRIVEN, ()),
@@ -63,9 +34,7 @@ def test_the_frames_of_a_run_are_read_once(tmp_path, monkeypatch):
     monkeypatch.setattr(past, "whole_frames", lambda run: looks.append(run.path) or look(run))
     (tmp_path / "case.yaml").write_text(PLANAR)
     simulate(load_case(tmp_path / "case.yaml", ["time.end=1e-3"]), tmp_path / "out.h5")
-    options = ("--set", "time.end=2e-3", "-q")
-    done = CliRunner().invoke(main, ["resume", str(tmp_path / "out.h5"), *options])
-    assert done.exit_code == 0, done.output
+    command("resume", tmp_path / "out.h5", "--set", "time.end=2e-3", "-q")
     with open_trajectory(tmp_path / "out.h5") as run:
         assert (run.status, run.time[-1]) == ("finished", 2e-3)
     assert len(looks) == 1
@@ -75,44 +44,11 @@ class Asked(Exception):
     """Stands for whatever ends a run between two steps."""
 
 
-def make(folder, text, overrides=()):
-    (folder / "case.yaml").write_text(text)
-    return load_case(folder / "case.yaml", overrides)
-
-
-def after(steps, then=lambda: "the test"):
-    """Return a ``stop`` that calls ``then`` once so many steps were made."""
-    made = [0]
-
-    def stop():
-        made[0] += 1
-        return then() if made[0] == steps else ""
-
-    return stop
-
-
-def killed_at_every_step(path, folder):
-    """Return a ``stop`` that keeps a copy of the file at every step: what a kill would leave."""
-    made = [0]
-
-    def stop():
-        made[0] += 1
-        shutil.copy(path, folder / f"{made[0]}.h5")
-        return ""
-
-    return stop
-
-
 @pytest.fixture(params=SCENES, scope="module")
 def unbroken(request, tmp_path_factory):
     """A run, and copies of its file after every step."""
     folder = tmp_path_factory.mktemp("unbroken")
-    (folder / "killed").mkdir()
-    text, overrides = SCENES[request.param]
-    path = folder / "out.h5"
-    stop = killed_at_every_step(path, folder / "killed")
-    simulate(make(folder, text, overrides), path, stop=stop)
-    return path, sorted(folder.glob("killed/*.h5"), key=lambda name: int(name.stem))
+    return run_with_copies(make(folder, *SCENES[request.param]), folder)[:2]
 
 
 def test_a_run_killed_between_steps_goes_on_with_the_same_bits(unbroken, tmp_path):
@@ -283,10 +219,6 @@ def test_what_cannot_be_computed_for_earlier_frames_is_refused(tmp_path):
         simulate(make(tmp_path, PLANAR), path, stop=after(5))
     with pytest.raises(CaseError, match="have no director, so force cannot be computed"):
         resume(path, overrides=["output.fields=[position, force]"])
-
-
-def call(*arguments):
-    return CliRunner().invoke(main, [str(argument) for argument in arguments])
 
 
 def test_the_command_goes_on_and_says_so(tmp_path):

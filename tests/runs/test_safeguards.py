@@ -5,8 +5,8 @@ import errno
 import h5py
 import numpy as np
 import pytest
-from test_commands import call
-from test_resume import DRIVEN, PLANAR, after, make
+from calls import call
+from interrupted import DRIVEN, PLANAR, after, make
 
 from rodsim import open_trajectory, resume, simulate
 from rodsim.analysis.replay import Replay

@@ -7,7 +7,7 @@ import sys
 import time
 
 import pytest
-from test_resume import PLANAR, make
+from interrupted import PLANAR, make
 
 from rodsim import open_trajectory
 

@@ -16,12 +16,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from calls import call
 from scenes import CONFIGS
 
 from rodsim import open_trajectory, simulate
 from rodsim.case import load_case
-from rodsim.cli import main
 from rodsim.errors import CaseError, UsageError
 from rodsim.output.paths import OutputLock, writing_process
 from rodsim.sweep.names import folder_name
@@ -36,16 +35,6 @@ RING = str(CONFIGS / "closed_ring.yaml")
 SHORT = ("--set", "rods.ring.shape.points=40", "--set", "time.end=2e-3")
 SWIMMING = CONFIGS / "sweep_swimming_speed.csv"
 K = 1.2566370614359172  # um^-1, of the flagellum
-
-
-@pytest.fixture
-def here(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
-def call(*arguments):
-    return CliRunner().invoke(main, [str(argument) for argument in arguments])
 
 
 def rows(path="sweep/summary.csv"):

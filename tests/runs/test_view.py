@@ -8,12 +8,11 @@ import zlib
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from calls import command, told
 from outputs import CASE, POINTS, RODS, TIMES, create, frame
 from scenes import CONFIGS
 
 from rodsim import open_trajectory
-from rodsim.cli import main
 
 pytest.importorskip("k3d", reason="needs the extra view")
 msgpack = pytest.importorskip("msgpack")
@@ -38,12 +37,6 @@ def write(writer, frames):
         writer.write_frame(index, index, *shown(index))
 
 
-def call(*arguments):
-    result = CliRunner().invoke(main, [str(argument) for argument in arguments])
-    assert result.exit_code == 0, result.output
-    return result.stderr
-
-
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
     """Six frames of random numbers: two rods, the second closed, seven tracers."""
@@ -51,8 +44,7 @@ def page(tmp_path_factory):
     with create(folder / "out.h5") as writer:
         write(writer, range(len(TIMES)))
         writer.finish("finished", {})
-    told = call("view", folder / "out.h5", "--radius", RADIUS)
-    assert "6 frames" in told
+    assert "6 frames" in told("view", folder / "out.h5", "--radius", RADIUS)
     return folder / "out.html"
 
 
@@ -78,10 +70,10 @@ def test_rods_are_tubes_along_their_points_in_every_frame(page):
     by_id = {thing["id"]: thing for thing in objects}
     assert [rod["name"] for rod in panel["rods"]] == ["zeta", "alpha"]
     assert panel["times"] == TIMES.tolist()
-    for rod, told, stripe in zip(RODS, panel["rods"], panel["stripes"], strict=True):
-        tube, stripe = by_id[told["object"]], by_id[stripe]
+    for rod, panelled, stripe in zip(RODS, panel["rods"], panel["stripes"], strict=True):
+        tube, stripe = by_id[panelled["object"]], by_id[stripe]
         assert tube["width"] == pytest.approx(RADIUS, rel=SINGLE)
-        assert told["points"] == rod.count + rod.closed
+        assert panelled["points"] == rod.count + rod.closed
         for k in range(len(TIMES)):
             fields = shown(k)[0]
             line, first = fields["position"].T, fields["director"][0].T
@@ -118,18 +110,16 @@ def test_nothing_comes_from_elsewhere_and_a_title_cannot_end_the_script(page, tm
     case = type(CASE)("", json.dumps({"title": evil}), [])
     with create(tmp_path / "evil.h5", case=case) as writer:
         write(writer, range(1))
-    call("view", tmp_path / "evil.h5", "--radius", RADIUS, "-q")
+    told("view", tmp_path / "evil.h5", "--radius", RADIUS, "-q")
     assert evil not in (tmp_path / "evil.html").read_text(encoding="utf-8")
     assert contents(tmp_path / "evil.html")[1]["title"] == evil
 
 
 def test_a_page_is_refused_with_the_reason(tmp_path):
     create(tmp_path / "none.h5").finish("stopped", {})
-    result = CliRunner().invoke(main, ["view", str(tmp_path / "none.h5")])
-    assert result.exit_code == 4
+    result = command("view", tmp_path / "none.h5", code=4)
     assert "has no frames yet" in result.stderr
-    result = CliRunner().invoke(main, ["view", str(tmp_path / "none.h5"), "-o", "a.png"])
-    assert result.exit_code == 2
+    result = command("view", tmp_path / "none.h5", "-o", "a.png", code=2)
     assert "must end in one of .html" in result.stderr
 
 
@@ -240,8 +230,8 @@ def test_the_slider_moves_the_tubes(browser, page):
 )
 def test_shipped_scenes_open(browser, tmp_path, config, end):
     output = tmp_path / "out.h5"
-    call("run", CONFIGS / f"{config}.yaml", "--set", f"time.end={end}", "-q", "-o", output)
-    call("view", output, "-q")
+    told("run", CONFIGS / f"{config}.yaml", "--set", f"time.end={end}", "-q", "-o", output)
+    told("view", output, "-q")
     page = output.with_suffix(".html")
     assert page.stat().st_size < 5e6
     visit(browser, page)

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from test_pictures import call, uncut  # noqa: F401  (a fixture)
-from test_resume import make
+from calls import told
+from interrupted import make
+from test_pictures import uncut  # noqa: F401  (a fixture)
 from test_wall_runs import SETTLING
 
 from rodsim import open_trajectory, simulate
@@ -78,7 +79,7 @@ def test_the_wall_is_drawn_where_there_is_one(
     uncut,  # noqa: F811
     tmp_path,
 ):
-    call(command, runs / "wall.h5", "-o", tmp_path / "a.png", *options, "-q")
+    told(command, runs / "wall.h5", "-o", tmp_path / "a.png", *options, "-q")
     assert [place for _, place in drawn["lines"]] == [WALL] * lines
     assert {name for name, _ in drawn["lines"]} <= {
         "axvline" if "line:z" in options or "zy" in options else "axhline"
@@ -86,7 +87,7 @@ def test_the_wall_is_drawn_where_there_is_one(
     assert len(drawn["planes"]) == planes
     assert len(uncut) == 1
     drawn["lines"].clear(), drawn["planes"].clear()
-    call(command, runs / "free.h5", "-o", tmp_path / "b.png", *options, "-q")
+    told(command, runs / "free.h5", "-o", tmp_path / "b.png", *options, "-q")
     assert drawn == {"lines": [], "planes": []}
 
 
@@ -104,7 +105,7 @@ def test_colours_and_stream_lines_do_not_break_on_what_is_below(runs, tmp_path, 
 
     monkeypatch.setattr(Axes, "pcolormesh", noted)
     out = tmp_path / "a.png"
-    call("flow", runs / "wall.h5", "--grid", "-1:2:21,0.4,-1:1:21", "-o", out, "-q")
+    told("flow", runs / "wall.h5", "--grid", "-1:2:21,0.4,-1:1:21", "-o", out, "-q")
     assert len(streams) == 1
     assert len(streams[0].lines.get_segments()) > 20
     assert limits[0][0] == 0.0
@@ -112,7 +113,7 @@ def test_colours_and_stream_lines_do_not_break_on_what_is_below(runs, tmp_path, 
 
 
 def test_movies_draw_the_wall_in_every_picture(runs, drawn, tmp_path):
-    call("plot", runs / "wall.h5", "-o", tmp_path / "a.gif", "--view", "yz", "-n", "3", "-q")
+    told("plot", runs / "wall.h5", "-o", tmp_path / "a.gif", "--view", "yz", "-n", "3", "-q")
     assert drawn["lines"] == [("axhline", WALL)] * 3
 
 
@@ -165,17 +166,17 @@ def test_below_the_wall_there_is_no_flow_and_on_it_none(runs):
 
 def test_flows_are_exported_with_nan_below_and_paths_end_above(runs, tmp_path):
     table, paths = tmp_path / "a.npz", tmp_path / "b.npz"
-    call("flow", runs / "wall.h5", "--grid", "-1:2:7,0.3,-1:1:11", "-o", table, "-q")
+    told("flow", runs / "wall.h5", "--grid", "-1:2:7,0.3,-1:1:11", "-o", table, "-q")
     with np.load(table) as flow:
         assert (np.isnan(flow["velocity"]).any(axis=(0, 1, 3)) == (flow["z"] < WALL - 1e-9)).all()
-    call("flow", runs / "wall.h5", "--tracers", "--grid", "-1:2:4,0.3,-1:1:11", "-o", paths, "-q")
+    told("flow", runs / "wall.h5", "--tracers", "--grid", "-1:2:4,0.3,-1:1:11", "-o", paths, "-q")
     with np.load(paths) as found:
         position = found["position"]
     assert position.shape == (5, 32, 3)  # of 44, twelve would start below
     assert position[..., 2].min() >= WALL
     assert np.isfinite(position).all()
     assert abs(position[-1] - position[0]).max() > 0.05
-    said = call("flow", runs / "wall.h5", "--tracers", "--grid", "-1:2:4,0.3,-1:1:11", "-o", paths)
+    said = told("flow", runs / "wall.h5", "--tracers", "--grid", "-1:2:4,0.3,-1:1:11", "-o", paths)
     assert "12 tracers would start below the wall" in said
 
 
@@ -195,7 +196,7 @@ def test_paraview_gets_the_wall_as_a_polygon(runs, tmp_path):
 
     seen = {}
     for name in ("wall", "free"):
-        call("export", runs / f"{name}.h5", "-o", tmp_path / f"{name}.vtkhdf", "-q")
+        told("export", runs / f"{name}.h5", "-o", tmp_path / f"{name}.vtkhdf", "-q")
         source = reader()
         source.SetFileName(str(tmp_path / f"{name}.vtkhdf"))
         source.UpdateInformation()

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from calls import call
 from contents import differences
-from test_commands import call
-from test_resume import after, killed_at_every_step, make
+from interrupted import after, make, run_with_copies
 
 from rodsim import open_trajectory, resume, simulate
 from rodsim.errors import DivergedError, StoppedError
@@ -36,10 +36,7 @@ output: {interval: 0.13}
 def settled(tmp_path_factory):
     """A run of the scene, with a copy of its file after every step."""
     folder = tmp_path_factory.mktemp("settled")
-    (folder / "killed").mkdir()
-    path = folder / "out.h5"
-    simulate(make(folder, SETTLING), path, stop=killed_at_every_step(path, folder / "killed"))
-    return path, sorted(folder.glob("killed/*.h5"), key=lambda name: int(name.stem))
+    return run_with_copies(make(folder, SETTLING), folder)[:2]
 
 
 def write(folder, text=SETTLING):

@@ -6,11 +6,10 @@ with other units, spacings, or diverged, in test_data.py.
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from calls import call
 
 from rodsim.analysis.topology import twist, writhe
 from rodsim.case import load_case
-from rodsim.cli import main
 from rodsim.forces.elastic import ENERGIES
 from rodsim.run.forecast import forecast
 from rodsim.run.machine import Machine
@@ -86,7 +85,7 @@ def test_2_a_slender_fibre_says_what_it_will_cost(tmp_path):
     case = load_case(path, ["time.end=10"])
     cost = forecast(Machine(case, build_scene(case), False))
     assert cost.evaluations > 1e7  # steps are held by the number of their stages
-    said = CliRunner().invoke(main, ["info", str(path), "--set", "time.end=10"]).stdout
+    said = call("info", path, "--set", "time.end=10").stdout
     assert (
         "shear and stretch set the fastest rate: a quarter of them would leave 0.25 of it" in said
     )

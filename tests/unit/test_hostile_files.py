@@ -5,10 +5,9 @@ import zlib
 import h5py
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from calls import call, command
 from outputs import POINTS, create, frame, write
 
-from rodsim.cli import main
 from rodsim.errors import FileError
 from rodsim.output import open_trajectory
 from rodsim.output.packed import LARGEST_CHUNK
@@ -115,7 +114,7 @@ def test_a_case_that_cannot_be_read_is_damage(output, text):
         file["case/resolved"] = text
     with open_trajectory(output) as run, pytest.raises(FileError, match="its case cannot be read"):
         run.case_data()
-    checked = CliRunner().invoke(main, ["info", str(output), "--check"])
+    checked = call("info", output, "--check")
     assert (checked.exit_code, checked.stderr.count("\n")) == (4, 1)
     assert "damaged: its case cannot be read" in checked.stderr
 
@@ -136,14 +135,12 @@ def test_nothing_of_a_file_steers_the_terminal(output):
         file.move("rods/alpha", f"rods/{ESCAPES}")
         file["case"].attrs["time_unit"] = ESCAPES
         file["case/resumes"][0] = ESCAPES.encode()
-    shown = CliRunner().invoke(main, ["info", str(output)])
-    assert shown.exit_code == 0
+    shown = command("info", output)
     assert shown.stdout.replace("\n", "").isprintable()
     assert shown.stdout.count(r"\x1b[31mred\x1b]0;title\x07") >= 4
     with h5py.File(output, "r+") as file:
         file.attrs["status"] = ESCAPES
-    refused = CliRunner().invoke(main, ["info", str(output)])
-    assert refused.exit_code == 4
+    refused = command("info", output, code=4)
     assert refused.stderr.replace("\n", "").isprintable()
 
 
@@ -154,6 +151,5 @@ def test_nothing_of_a_case_steers_the_terminal(tmp_path):
         "rods: {r: {shape: {kind: straight, points: 5, length: 2},"
         " moduli: {bending: 3e-3, twisting: 2e-3, shear: 0.7, stretch: 0.9}}}\ntime: {end: 0.5}\n"
     )
-    shown = CliRunner().invoke(main, ["info", str(tmp_path / "case.yaml")])
-    assert shown.exit_code == 0
+    shown = command("info", tmp_path / "case.yaml")
     assert shown.stdout.startswith(r"\x1b[31mred")

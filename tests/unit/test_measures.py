@@ -5,13 +5,12 @@ import re
 import numpy as np
 import outputs
 import pytest
-from click.testing import CliRunner
+from calls import command
 from scenes import ROOT
 
 import rodsim.analysis
 from rodsim.analysis.measures import MEASURES, mean
 from rodsim.analysis.measuring import available, of_run, over_time, pick
-from rodsim.cli import main
 from rodsim.errors import FileError, UsageError
 from rodsim.output import open_trajectory
 from rodsim.scene.shapes import rotation_matrix
@@ -127,12 +126,6 @@ def run(path):
         yield run
 
 
-def measure(path, *arguments, code=0):
-    result = CliRunner().invoke(main, ["measure", str(path), *map(str, arguments)])
-    assert result.exit_code == code, result.output
-    return result
-
-
 def test_a_name_is_of_every_rod_that_has_it(run):
     table = over_time(run, pick(run, ["radius_of_gyration", "end_to_end", "link", "net_force"]))
     assert [column.name for column in table.columns] == [
@@ -214,11 +207,11 @@ def test_what_a_file_lacks_is_not_listed(run):
 
 
 def test_the_command_lists_and_tabulates(path, tmp_path):
-    listed = measure(path).stdout
+    listed = command("measure", path).stdout
     assert re.search(r"^ +end_to_end +um +distance of the ends.*\(open rods\)$", listed, re.M)
     assert listed.index("of each rod:") < listed.index("of the whole scene:")
     table = tmp_path / "t.csv"
-    done = measure(path, "writhe", "--rod", "alpha", "--every", 5, "--csv", table)
+    done = command("measure", path, "writhe", "--rod", "alpha", "--every", 5, "--csv", table)
     lines = done.stdout.splitlines()
     assert lines[0].split() == ["time", "alpha.writhe"]
     assert lines[1].split() == ["s"]
@@ -241,7 +234,7 @@ def test_the_command_lists_and_tabulates(path, tmp_path):
     ],
 )
 def test_options_that_cannot_be_are_refused(path, arguments, words):
-    assert words in measure(path, *arguments, code=2).stderr
+    assert words in command("measure", path, *arguments, code=2).stderr
 
 
 OWN = '''
@@ -277,7 +270,9 @@ def test_quantities_of_ones_own(path, tmp_path, monkeypatch, run):
     assert [c.unit for c in table.columns] == ["um", "um", ""]
     np.testing.assert_array_equal(table.values[:, 1], run.position[:, 4:, 2].max(axis=1))
     np.testing.assert_array_equal(table.values[:, 2], run.observable("net_force")[:, 1] + 9)
-    shown = measure(path, "--measure", "my.py:height", "--rod", "zeta", "--every", 5).stdout
+    shown = command(
+        "measure", path, "--measure", "my.py:height", "--rod", "zeta", "--every", 5
+    ).stdout
     assert shown.split()[:3] == ["time", "zeta.height", "s"]
     for text, words in {
         "my.py:heigth": "my.py has no function 'heigth': did you mean 'height'",
@@ -286,4 +281,4 @@ def test_quantities_of_ones_own(path, tmp_path, monkeypatch, run):
         "my.py:wrong": "UsageError: net_force is not of one rod; these are: bending_energy",
         "bad.py:f": "bad.py: cannot be loaded: ModuleNotFoundError",
     }.items():
-        assert words in measure(path, text, code=2).stderr
+        assert words in command("measure", path, text, code=2).stderr

@@ -5,10 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from calls import command, told
 from drawn import EPSILON, coil, faults, wave, write
 
-from rodsim.cli import main
 from rodsim.output.layout import ENERGY
 
 matplotlib = pytest.importorskip("matplotlib")
@@ -56,15 +55,9 @@ def seen(monkeypatch):
 
 
 @pytest.fixture
-def here(runs, monkeypatch, tmp_path):
-    monkeypatch.chdir(tmp_path)
+def here(runs, here):
+    """The runs, from an empty folder."""
     return runs
-
-
-def call(*arguments, code=0):
-    result = CliRunner().invoke(main, [str(argument) for argument in arguments])
-    assert result.exit_code == code, result.output
-    return result.stderr
 
 
 def words(figure):
@@ -93,7 +86,7 @@ def words(figure):
     ],
 )
 def test_nothing_is_cut_or_collapsed_or_over_something_else(name, options, here, seen, recwarn):
-    said = call("plot", here / f"{name}.h5", "-o", "a.png", *options)
+    said = told("plot", here / f"{name}.h5", "-o", "a.png", *options)
     assert said == "wrote a.png\n"  # nor a raw warning of matplotlib
     assert [str(w.message) for w in recwarn if "layout" in str(w.message)] == []
     (figure,) = seen
@@ -118,7 +111,7 @@ def test_nothing_is_cut_or_collapsed_or_over_something_else(name, options, here,
     ],
 )
 def test_what_has_no_room_or_no_meaning_is_refused(options, words_said, here, tmp_path):
-    said = call("plot", here / "pair.h5", "-o", "a.png", *options, code=2)
+    said = told("plot", here / "pair.h5", "-o", "a.png", *options, code=2)
     assert words_said in said
     assert list(tmp_path.iterdir()) == []
 
@@ -127,14 +120,14 @@ def test_size_and_dots_are_those_asked_for(here):
     from PIL import Image
 
     arguments = ("-o", "a.png", "-n", "2", "--size", "86x60", "--dpi", "150")
-    call("plot", here / "coil.h5", *arguments)
+    told("plot", here / "coil.h5", *arguments)
     with Image.open("a.png") as picture:
         assert picture.size == (507, 354)  # 86/25.4*150, 60/25.4*150
 
 
 def test_the_title_is_the_cases_or_the_one_asked_for(here, seen):
     for options in ((), ("--title", "Mine"), ("--title", "")):
-        call("plot", here / "pair.h5", "-o", "a.png", "-n", "1", *options)
+        told("plot", here / "pair.h5", "-o", "a.png", "-n", "1", *options)
     titles = [words(figure) & {"Two waves", "Mine"} for figure in seen]
     assert titles == [{"Two waves"}, {"Mine"}, set()]
 
@@ -174,7 +167,7 @@ def test_rods_are_told_apart_in_colour_and_in_grey():
 def test_a_key_says_what_colours_mean_where_that_is_not_said_already(
     name, options, expected, here, seen
 ):
-    call("plot", here / f"{name}.h5", "-o", "a.png", *options)
+    told("plot", here / f"{name}.h5", "-o", "a.png", *options)
     keys = {"left", "right", "time (s)", "flagellum_0", "…", "flagellum_9"}
     assert words(seen[0]) & keys == expected
 
@@ -204,9 +197,9 @@ def test_signed_quantities_have_diverging_colours_with_zero_in_the_middle():
 
 
 def test_range_and_jolt_reach_the_picture(here, seen):
-    call("plot", here / "coil.h5", "-w", "twist", "-o", "a.png")
-    call("plot", here / "coil.h5", "-w", "twist", "-o", "b.png", "--range", "-3", "1")
-    call(
+    told("plot", here / "coil.h5", "-w", "twist", "-o", "a.png")
+    told("plot", here / "coil.h5", "-w", "twist", "-o", "b.png", "--range", "-3", "1")
+    told(
         "plot",
         here / "coil.h5",
         "-n",
@@ -314,7 +307,7 @@ def test_tubes_are_as_thick_as_the_fluid_takes_them_for(options, radius, here, m
 
     sizes, draw = [], Shapes.draw
     monkeypatch.setattr(Shapes, "draw", lambda s, *a: sizes.append(s.size) or draw(s, *a))
-    call("plot", here / "coil.h5", "-n", "1", "-o", "a.png", *options)
+    told("plot", here / "coil.h5", "-n", "1", "-o", "a.png", *options)
     assert sizes == [pytest.approx(2.0 * radius, rel=1e-8)]
 
 
@@ -323,7 +316,7 @@ def test_tubes_are_as_thick_as_the_fluid_takes_them_for(options, radius, here, m
 
 @pytest.mark.parametrize("options", [("-w", "energy"), ("-w", "speed"), ("-w", "radius")])
 def test_legends_lie_on_no_curve(options, here, seen):
-    call("plot", here / "hooks.h5", "-o", "a.png", *options)
+    told("plot", here / "hooks.h5", "-o", "a.png", *options)
     figure = seen[0]
     legends = [axis.get_legend() for axis in figure.axes if axis.get_legend()]
     assert legends or options[1] == "radius"
@@ -345,9 +338,9 @@ def test_powers_of_ten_stand_with_the_unit(here, seen):
 
 
 def test_hooks_have_curves_and_columns_of_their_own(here, seen):
-    call("plot", here / "hooks.h5", "-w", "hook_energy", "-o", "a.png")
+    told("plot", here / "hooks.h5", "-w", "hook_energy", "-o", "a.png")
     assert {"cell.tail", "cell.other"} <= words(seen[0])
-    call("energy", here / "hooks.h5", "--csv", "e.csv")
+    command("energy", here / "hooks.h5", "--csv", "e.csv")
     heads, *rows = (line.split(",") for line in Path("e.csv").read_text().splitlines())
     columns = dict(zip(heads, np.array(rows, float).T, strict=True))
     unit = "(g um^2 s^-2)"
@@ -358,12 +351,12 @@ def test_hooks_have_curves_and_columns_of_their_own(here, seen):
 
 def test_movies_have_a_key_1080_lines_and_turn(here, tmp_path):
     imageio_ffmpeg = pytest.importorskip("imageio_ffmpeg")
-    call("plot", here / "coil.h5", "-o", "a.mp4", "-n", "2", "--turn", "90", "-q")
+    told("plot", here / "coil.h5", "-o", "a.mp4", "-n", "2", "--turn", "90", "-q")
     reader = imageio_ffmpeg.read_frames("a.mp4")
     assert next(reader)["size"] == (1920, 1080)
     first, second = (np.frombuffer(f, np.uint8).reshape(1080, 1920, 3) for f in reader)
     assert (np.abs(first.astype(int) - second).max(axis=2) > 60).mean() > 0.01
-    said = call("plot", here / "pair.h5", "-o", "b.gif", "--turn", "9", "--view", "yz", code=2)
+    said = told("plot", here / "pair.h5", "-o", "b.gif", "--turn", "9", "--view", "yz", code=2)
     assert "a view straight at yz cannot turn" in said
 
 
