@@ -204,7 +204,9 @@ def show(name: str, folder: Path) -> str:
     with Image.open(picture) as image:
         small = image.convert("RGB")
         small.thumbnail(SIZE, Image.Resampling.LANCZOS)
-        small = small.quantize(COLOURS, dither=Image.Dither.NONE)
+        # By coverage, or few pixels of a colour of their own, as those of names, take another.
+        coverage = Image.Quantize.MAXCOVERAGE
+        small = small.quantize(COLOURS, method=coverage, kmeans=2, dither=Image.Dither.NONE)
     small.save(PICTURES / f"{name}.png", optimize=True)
     with rodsim.open_trajectory(output) as stored:
         measured = number(stored)
