@@ -94,16 +94,17 @@ def test_info_says_it_of_a_wall_and_a_held_end_too(tmp_path):
 
 
 def test_the_parts_are_those_of_the_fluid_and_held_points_are_exact(tmp_path):
-    for change, home, held in (
-        ([], "spatial_7", []),
-        (["fluid.wall={z: -4}"], "wall_spatial_7", []),
-        (["rods.coil.end={hold: clamped}", "fluid.blob=algebraic9"], "spatial_9", [229]),
+    clamped = ["rods.coil.end={hold: clamped}", "fluid.blob=algebraic9"]
+    for change, home, exact, held in (
+        ([], "spatial_7", "free:spatial_7", []),
+        (["fluid.wall={z: -4}"], "wall_spatial_7", "wall:spatial_7", []),
+        (clamped, "spatial_9", "free:spatial_9", [229]),
     ):
         scene = build_scene(make(tmp_path, SCENE, change))
         (part,) = (part for part in scene.parts.of(FLOW) if part.name == "fluid")
         assert part.kernel == f"rodsim.flows.fast.parts:{home}"
         assert part.prepare.__self__._held == held
-        assert len(part.needs) == 1 + len(held)
+        assert set(part.needs) == {"rodsim.flows.by_threads:share_out", f"rodsim.flows.{exact}"}
 
 
 def test_an_accuracy_that_limits_the_run_is_warned_of(tmp_path):
