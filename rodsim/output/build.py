@@ -43,7 +43,7 @@ def build_file(path: Path, plan: Plan) -> h5py.File:
             f"the output needs {size(needed)}, {size(free)} are free: "
             "give a longer output.interval or fewer output.fields"
         )
-    file = h5py.File(path, "x", locking=False)
+    file = rows.open_to_write(path, new=True)
     try:
         _reserve(file, needed)
         _fill(file, plan)

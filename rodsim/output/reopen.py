@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import h5py
 import numpy as np
 
 from rodsim.compiled.settings import machine
@@ -11,6 +10,7 @@ from rodsim.output import layout
 from rodsim.output.guarded import GuardedFile
 from rodsim.output.layout import CLOCK, Plan
 from rodsim.output.reader import Trajectory
+from rodsim.output.rows import open_to_write
 from rodsim.output.vtkhdf import View
 from rodsim.output.writer import TrajectoryWriter, short
 
@@ -21,7 +21,7 @@ def reopen(path, plan: Plan, lock) -> TrajectoryWriter:
     """Open a file to go on in it; the lock is held. Raises FileError where it is not as planned."""
     _check_layout(path, plan)
     try:
-        file = h5py.File(path, "r+", locking=False)
+        file = open_to_write(path, new=False)
     except OSError as error:
         raise FileError(f"{path}: cannot be written: {error}") from error
     writer = TrajectoryWriter(path, file, plan, lock)

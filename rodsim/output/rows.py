@@ -1,14 +1,29 @@
 """Writes to an open output file, at every frame: what h5py does around each takes the time of many.
 
-Datasets of fixed size lie in one piece whose place in the file never changes, and HDF5 keeps none
-of it in memory after a flush: numbers go there without it, a tenth of the time. What grows or
-belongs to a group is written by HDF5's own calls.
+Datasets of fixed size lie in one piece whose place in the file never changes, and HDF5 is told to
+keep none of it in memory: numbers go there without it, a tenth of the time. What grows or belongs
+to a group is written by HDF5's own calls.
 """
 
 import os
 
 import h5py
 import numpy as np
+
+
+def open_to_write(path, new: bool) -> h5py.File:
+    """Open a file, or create it, whose datasets HDF5 does not keep pieces of in memory.
+
+    Who reads it in this process shares HDF5's memory with the writer: a dataset that stays open
+    there would go on showing a piece as it was before numbers were written past HDF5.
+    """
+    access, name = h5py.h5p.create(h5py.h5p.FILE_ACCESS), os.fsencode(path)
+    access.set_libver_bounds(h5py.h5f.LIBVER_EARLIEST, h5py.h5f.LIBVER_LATEST)
+    access.set_file_locking(False, ignore_when_disabled=False)
+    access.set_sieve_buf_size(0)
+    if new:
+        return h5py.File(h5py.h5f.create(name, h5py.h5f.ACC_EXCL, fapl=access))
+    return h5py.File(h5py.h5f.open(name, h5py.h5f.ACC_RDWR, fapl=access))
 
 
 def descriptor(file: h5py.File) -> int:

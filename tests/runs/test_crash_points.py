@@ -16,7 +16,7 @@ from outputs import TIMES, frame, make_plan
 
 from rodsim import open_trajectory
 from rodsim.errors import FileError
-from rodsim.output import build, reopen, rows
+from rodsim.output import reopen, rows
 from rodsim.output.layout import FIELDS
 from rodsim.output.paths import OutputLock
 from rodsim.output.writer import TrajectoryWriter
@@ -47,18 +47,11 @@ class Logged:
 @contextmanager
 def logging(monkeypatch, log):
     """Let the writer write through logged files."""
-    real = h5py.File
     streams = []
 
-    def opened(path, mode, **_):
-        streams.append(Logged(path, {"x": "x+b", "r+": "r+b"}[mode], log))
-        return real(streams[-1], "w" if mode == "x" else "r+")
-
-    class Fake:
-        File = staticmethod(opened)
-
-        def __getattr__(self, name):
-            return getattr(h5py, name)
+    def opened(path, new):
+        streams.append(Logged(path, "x+b" if new else "r+b", log))
+        return h5py.File(streams[-1], "w" if new else "r+")
 
     def write_at(handle, data, offset, write=rows.write_at):
         log.append((offset, bytes(data)))
@@ -67,8 +60,8 @@ def logging(monkeypatch, log):
     with monkeypatch.context() as patch:
         patch.setattr(rows, "descriptor", lambda file: streams[-1].fileno())
         patch.setattr(rows, "write_at", write_at)
-        patch.setattr(build, "h5py", Fake())
-        patch.setattr(reopen, "h5py", Fake())
+        patch.setattr(rows, "open_to_write", opened)
+        patch.setattr(reopen, "open_to_write", opened)
         yield
     for stream in streams:
         stream.close()

@@ -83,3 +83,21 @@ def test_a_place_beyond_the_end_is_refused(output):
     with pytest.raises(FileError, match=LENGTHS):
         opened_again(output)
     assert output.stat().st_size == size
+
+
+def test_a_dataset_held_open_in_this_process_shows_every_frame(tmp_path, output):
+    path = tmp_path / "new.h5"
+    with create(path) as writer:
+        check_what_is_held(path, writer, 0)
+    with opened_again(output) as writer:
+        check_what_is_held(output, writer, 4)
+
+
+def check_what_is_held(path, writer, first):
+    with h5py.File(path, "r", locking=False) as file:
+        committed, lengths = file["committed"], file[LENGTHS]
+        for index in range(first, 6):
+            assert (committed[()], np.isfinite(lengths[:, 0]).sum()) == (index, index)
+            write(writer, [index])
+            np.testing.assert_array_equal(lengths[index], frame(index)[1]["length"])
+        assert committed[()] == 6
