@@ -142,7 +142,7 @@ def _group_sum(walled, blob, angular):
                 close = near[near_begins[a] : near_begins[a + 1]]
                 count = _total(nodes, afar, PROXIES) + _total(nodes, close, COUNT)
                 sources, g = room_for(count)
-                room = np.empty((2, count if walled else 0))
+                room = np.empty((2, sources.shape[1] if walled else 0))
                 end = _gather(nodes, afar, START, PROXIES, places, shared, sources, g, 0)
                 _gather(nodes, close, LO, COUNT, points, loads, sources, g, end)
                 for t in range(members[a], members[a + 1]):
