@@ -87,8 +87,5 @@ def address_of(kernel: Kernel | str) -> int:
 
 
 def interpreted(address, *arguments):
-    """Call a part or a sum where the JIT is off; unsigned numbers wrap as in machine code."""
-    from numpy import errstate
-
-    with errstate(over="ignore"):
-        _INTERPRETED[address](*arguments)
+    """Call a part or a sum where the JIT is off."""
+    _INTERPRETED[address](*arguments)

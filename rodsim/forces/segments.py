@@ -120,13 +120,13 @@ def _internal(varying):
             rest = 0.0, 0.0, 0.0
             last = first + np.uint64(counts[r]) - ONE
             for closing in range(2 if closed[r] else 1):  # one loop to compile, run twice
-                low, high, on = first, last, ONE
+                low, high, to = first, last, first + ONE
                 if closing:
-                    low, high, on = last, last + ONE, first - last
+                    low, high, to = last, last + ONE, first
                 for k in range(max(low, begin), min(high, end)):
                     if varying:
                         a, b, rest = _moduli(along, k)
-                    _segment_loads(X, D, omega, a, b, rest, ds, k, k + on, internal)
+                    _segment_loads(X, D, omega, a, b, rest, ds, k, to + (k - low), internal)
             if begin <= last < end and not closed[r]:
                 for c in range(6):
                     internal[c, last] = 0.0
@@ -142,13 +142,13 @@ def balances(X, rods, begin, end, internal, loads):
         first = np.uint64(firsts[r])
         last = first + np.uint64(counts[r]) - ONE
         for piece in range(3):  # the first point, those between, the last: one loop to compile
-            low, high, back, on = first + ONE, last, ONE, ONE
+            low, high, before, after = first + ONE, last, first, first + ONE + ONE
             if piece == 0:
-                low, high, back = first, first + ONE, first - last
+                low, high, before, after = first, first + ONE, last, first + ONE
             elif piece == 2:
-                low, high, on = last, last + ONE, first - last
+                low, high, before, after = last, last + ONE, last - ONE, first
             for k in range(max(low, begin), min(high, end)):
-                _balance(X, internal, loads, k, k - back, k + on)
+                _balance(X, internal, loads, k, before + (k - low), after + (k - low))
 
 
 # Globals, so that compiled functions may call them and still be read from Numba's cache.
