@@ -122,8 +122,11 @@ class GuardedFile:
         self.array(name, kinds, shape, np.s_[:0] if shape else ())
         data = self._dataset(name)
         size = data.size * data.dtype.itemsize
-        if size and (data.id.get_offset() is None or data.id.get_storage_size() != size):
+        place = data.id.get_offset()
+        if size and (place is None or data.id.get_storage_size() != size):
             raise self._laid_out_anew(name)
+        if size and place + size > self.path.stat().st_size:  # not every HDF5 looks
+            raise self.damaged(f"{name} lies beyond its end")
 
     def growing(self, name: str, kinds: str) -> None:
         """Check a list that is to be lengthened."""
