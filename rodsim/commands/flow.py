@@ -86,7 +86,7 @@ def flow(output, at, grid_text, resolution, path, colour, arrows, log, tracers, 
     sheet = size, dpi, title
     with open_trajectory(output) as run, threads_for(10**12, threads):
         replay = Replay(run, device)
-        ensure_compiled(replay.scene, lambda line: quiet or click.echo(line, err=True), flow=True)
+        ensure_compiled(replay.scene, lambda line: quiet or say(line), flow=True)
         if tracers:
             _tracers(replay, at, until, grid_text, resolution, path, sheet, quiet)
         else:

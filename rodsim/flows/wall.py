@@ -40,8 +40,7 @@ def _sum(blob, planar, angular):
         scale, inverses = unit / (EIGHT_PI * viscosity), np.empty((2, sources.shape[1]))
         for i in range(np.uint64(begin), np.uint64(end)):
             x, y, z = unit * targets[0, i], unit * targets[1, i], unit * targets[2, i]
-            at, g = sources, loads
-            six = add_up(blob, planar, angular, WIDE, x, y, z, at, g, inverses, height, e2)
+            six = add_up(blob, planar, angular, WIDE, x, y, z, sources, loads, inverses, height, e2)
             for c in range(3):
                 out[c, i] += scale * six[c]
             for c in range(3, out.shape[0]):
